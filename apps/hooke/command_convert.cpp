@@ -46,6 +46,8 @@ int command_convert(Arguments arguments) {
       {"--subtract", "Take this solid out", SolidOperation::kDifference},
   };
   const std::map<std::string, UpAxis> axes = {{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}};
+  const std::map<std::string, ModelOrigin> origins = {
+      {"file", ModelOrigin::kFile}, {"center", ModelOrigin::kCenter}, {"bottom", ModelOrigin::kBottom}};
   app.add_option("IN", input, "Model to read")->required();
   app.add_option("OUT", output, "Model to write")->required();
   app.add_option("--up", options.up, "Axis that points up in the file: x, y or z; the format's by default")
@@ -53,6 +55,10 @@ int command_convert(Arguments arguments) {
       ->option_text("AXIS");
   add_number(app, "--scale", scale, 1e-9, 1e9, "Meters per unit of the file");
   add_number(app, "--fit", options.fit, 1e-6, 1e6, "Make the longest side so long [m]");
+  app.add_option("--origin", options.origin,
+                 "Put the origin there: file, center or bottom; the file's by default")
+      ->transform(CLI::Transformer(origins).description(""))
+      ->option_text("PLACE");
   app.get_option("--fit")->excludes("--scale");
   auto* const operations = app.add_option_group("Solids", "One of these; both models must be closed");
   for (Combination& c : combinations) operations->add_option(c.option, c.other, c.help)->option_text("MODEL");

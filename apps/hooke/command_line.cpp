@@ -1,9 +1,15 @@
 #include "hooke/command_line.h"
 
+#include "hooke/progress.h"
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -55,8 +61,26 @@ std::optional<Scene> read_scene(const std::string& path) {
   return std::move(loaded.value);
 }
 
+static std::string cache_folder() {
+  if (const char* chosen = std::getenv("HOOKE_CACHE"); chosen != nullptr) return chosen;
+  if (const char* caches = std::getenv("XDG_CACHE_HOME"); caches != nullptr && *caches != '\0')
+    return std::string(caches) + "/hooke";
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home != '\0' ? std::string(home) + "/.cache/hooke" : std::string();
+}
+
+LoadOptions load_options() {
+  constexpr double kParts = 1000;
+  auto shown = std::make_shared<std::optional<Progress>>();
+  return {.cache = cache_folder(), .progress = [shown](std::string_view what, double part) {
+            if (!*shown) shown->emplace(std::string(what), static_cast<std::uint64_t>(kParts));
+            (*shown)->show(static_cast<std::uint64_t>(kParts * part));
+            if (part >= 1) shown->reset();
+          }};
+}
+
 std::optional<Simulation> build_simulation(Scene scene) {
-  Loaded<Simulation> loaded = Simulation::create(std::move(scene));
+  Loaded<Simulation> loaded = Simulation::create(std::move(scene), {}, load_options());
   report(loaded.errors, loaded.warnings);
   return std::move(loaded.value);
 }

@@ -41,6 +41,10 @@ ExitCode report(std::span<const Error> errors, std::span<const Error> warnings);
 std::optional<Scene> read_scene(const std::string& path);
 
 /// Returns the simulation, or nothing after the errors were printed.
+/// Returns how programs make simulations: with convex parts kept in $HOOKE_CACHE, else $XDG_CACHE_HOME/hooke,
+/// else ~/.cache/hooke, and nowhere if HOOKE_CACHE is set and empty; with a line of progress.
+[[nodiscard]] LoadOptions load_options();
+
 std::optional<Simulation> build_simulation(Scene scene);
 
 /// These are settings of a scene that the command line may replace.

@@ -106,6 +106,7 @@ Result<std::optional<OutputFile>> open_report(const RunOptions& options) {
 /// Prints the results, and writes them to `json`, if it has a file.
 ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record,
                        std::optional<OutputFile>& json) {
+  for (const std::string& note : record.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   for (const std::string& warning : record.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (json) {
     json->write(run_json(simulation, record));
@@ -153,10 +154,11 @@ int command_run(Arguments arguments) {
   const std::uint64_t steps = options.seconds ? steps_in(scene, *options.seconds) : scene.step_count();
   const Placement placement =
       options.turned == 0 ? Placement{} : random_placement(options.turned, scene.world.gravity);
-  Loaded<Simulation> built = Simulation::create(std::move(scene), placement);
+  Loaded<Simulation> built = Simulation::create(std::move(scene), placement, load_options());
   if (!built) return report(built.errors, built.warnings);
   for (const Error& warning : loaded.warnings) record.warnings.push_back(to_line(warning));
   for (const Error& warning : built.warnings) record.warnings.push_back(to_line(warning));
+  for (const Error& note : built.notes) record.notes.push_back(to_line(note));
 
   Simulation& simulation = *built.value;
   const auto done = simulate(simulation, options, steps, record);

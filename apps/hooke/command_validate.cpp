@@ -16,7 +16,7 @@ bool is_good(const std::string& path) {
   report(scene.warnings, {});
   if (!scene) return false;
   const bool was_silent = scene.warnings.empty();
-  const Loaded<Simulation> simulation = Simulation::create(std::move(*scene.value));
+  const Loaded<Simulation> simulation = Simulation::create(std::move(*scene.value), {}, load_options());
   report(simulation.errors, {});
   report(simulation.warnings, {});
   return simulation && simulation.warnings.empty() && was_silent;

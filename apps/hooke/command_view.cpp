@@ -108,7 +108,7 @@ class Show {
   }
 
   Result<void> reset() {
-    Loaded<Simulation> built = Simulation::create(scene_);
+    Loaded<Simulation> built = Simulation::create(scene_, {}, load_options());
     if (!built) return built.errors.front();
     simulation_ = std::move(*built.value);
     drawing_ = SceneDrawing(style_);

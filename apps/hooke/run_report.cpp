@@ -160,6 +160,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"expect", json_of(simulation, simulation.verdicts())},
       {"passed", passed(simulation)},
       {"errors", errors},
+      {"notes", record.notes},
       {"warnings", record.warnings},
       {"problems", json_of_problems(record.problems)},
   };

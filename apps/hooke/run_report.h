@@ -14,8 +14,9 @@ struct RunRecord {
   std::string scene;                 ///< Name as the user gave it.
   std::vector<double> step_ms = {};  ///< Wall time of each step.
   Energy start = {};
-  StepReport last = {};   ///< Report of the last step.
-  StepReport worst = {};  ///< Largest number of each kind that any step refused or left undone.
+  StepReport last = {};                 ///< Report of the last step.
+  StepReport worst = {};                ///< Largest number of each kind that any step refused or left undone.
+  std::vector<std::string> notes = {};  ///< One line each, on what was made of the file's models.
   std::vector<std::string> warnings = {};  ///< One line each, of the file and of the run.
   std::vector<RunWarning> problems = {};   ///< Problems of the run.
 };

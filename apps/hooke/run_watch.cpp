@@ -119,15 +119,6 @@ double half_size(const Shape& shape) {
   }
 }
 
-double volume_of(const MeshDesc& mesh) {
-  double volume = 0;
-  for (const auto& t : mesh.triangles) {
-    const auto corner = [&](std::size_t i) { return vector_cast<double>(mesh.positions[t[i]]); };
-    volume += dot(corner(0), cross(corner(1), corner(2))) / 6;
-  }
-  return volume;
-}
-
 /// Bends are solved one after the other, once in a substep, and undo in part what their neighbors did. Over n
 /// cells of size a, cloth of rigidity D and density rho bends by about 1 + n^1.3 sqrt(D / rho) h / a^2 times
 /// as far as it should, measured on strips of 5 and 10 cells that hang from a clamped edge. Under weight, the
@@ -185,8 +176,8 @@ std::optional<RunWarning> thickness(double cell, Real thickness) {
 /// A solid that fills a mesh loses parts that are thinner than its cells, and the outermost parts of round
 /// shapes.
 std::optional<RunWarning> lost_parts(const World& world, const SceneObject& object, const SceneSolid& solid) {
-  if (object.model == nullptr || !(cell_of(solid) > 0)) return std::nullopt;
-  const double whole = volume_of(object.model->mesh);
+  if (!(cell_of(solid) > 0)) return std::nullopt;
+  const double whole = object.mesh_volume;
   const double filled = world.volume(object.solid);
   if (!(whole > 0) || !(filled < (1 - kLost) * whole)) return std::nullopt;
   return RunWarning{

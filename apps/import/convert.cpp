@@ -79,16 +79,33 @@ std::string percent_decoded(const std::string& text) {
   return result;
 }
 
-std::string texture_of(const aiMaterial& material, bool is_uri) {
+/// Takes the image that the file itself holds; none if it is not encoded, or too large.
+void take_embedded(const aiTexture* texture, ModelMaterial& material) {
+  if (texture == nullptr || texture->mHeight != 0 || texture->mWidth == 0) return;
+  if (texture->mWidth > io::kMaxImageSize) {
+    throw Refusal(ImporterExit::kLimitExceeded, "an image of more than 64 MiB");
+  }
+  const auto* first = reinterpret_cast<const std::byte*>(texture->pcData);
+  material.image = std::make_shared<const std::vector<std::byte>>(first, first + texture->mWidth);
+  material.texture = bare_name(texture->mFilename.C_Str());
+  const bool is_png = texture->mWidth > 4 && std::to_integer<int>(first[0]) == 0x89;
+  if (material.texture.find('.') == std::string::npos) {
+    if (material.texture.empty()) material.texture = "texture";
+    material.texture += is_png ? ".png" : ".jpg";
+  }
+}
+
+/// Adds what a material is painted with: the name of a file, or an image in the model.
+void take_texture(const aiScene& scene, const aiMaterial& material, bool is_uri, ModelMaterial& result) {
   aiString name;
   const bool found = material.GetTexture(aiTextureType_BASE_COLOR, 0, &name) == aiReturn_SUCCESS ||
                      material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == aiReturn_SUCCESS;
   const bool is_embedded = found && name.length > 0 && name.C_Str()[0] == '*';
-  if (!found || is_embedded) return {};
-  return bare_name(is_uri ? percent_decoded(name.C_Str()) : name.C_Str());
+  if (is_embedded) return take_embedded(scene.GetEmbeddedTexture(name.C_Str()), result);
+  if (found) result.texture = bare_name(is_uri ? percent_decoded(name.C_Str()) : name.C_Str());
 }
 
-ModelMaterial material_of(const aiMaterial& material, const Frame& frame) {
+ModelMaterial material_of(const aiScene& scene, const aiMaterial& material, const Frame& frame) {
   ModelMaterial result;
   result.name = io::cleaned_text(material.GetName().C_Str());
   aiColor4D color(result.color[0], result.color[1], result.color[2], 1.0f);
@@ -109,7 +126,7 @@ ModelMaterial material_of(const aiMaterial& material, const Frame& frame) {
   if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS) {
     result.shininess = shininess_of(fraction(roughness, 1.0f));
   }
-  result.texture = texture_of(material, frame.names_are_uris);
+  take_texture(scene, material, frame.names_are_uris, result);
   return result;
 }
 
@@ -118,7 +135,7 @@ class Builder {
  public:
   Builder(const aiScene& scene, const Frame& frame) : scene_(scene), has_normals_(frame.has_normals) {
     for (unsigned i = 0; frame.has_materials && i < scene.mNumMaterials; ++i) {
-      soup_.materials.push_back(material_of(*scene.mMaterials[i], frame));
+      soup_.materials.push_back(material_of(scene, *scene.mMaterials[i], frame));
     }
     if (soup_.materials.empty()) soup_.materials.emplace_back();
     if (soup_.materials.size() > io::kMaxModelMaterials) {
@@ -245,23 +262,42 @@ void compact(io::Soup& soup) {
   }
 }
 
-double longest_side(const std::vector<DVec3>& points) {
+struct Bounds {
+  DVec3 low, high;
+};
+
+Bounds bounds_of(const std::vector<DVec3>& points) {
   DVec3 low = points[0];
   DVec3 high = points[0];
   for (const DVec3 p : points) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  return {low, high};
+}
+
+double longest_side(const Bounds& bounds) {
+  const DVec3 size = bounds.high - bounds.low;
+  return std::max({size.x, size.y, size.z});
+}
+
+/// Returns the place, before it is scaled, that becomes the origin.
+DVec3 origin_of(const Bounds& bounds, ModelOrigin origin) {
+  if (origin == ModelOrigin::kFile) return {};
+  DVec3 middle = 0.5 * (bounds.low + bounds.high);
+  if (origin == ModelOrigin::kBottom) middle.y = bounds.low.y;
+  return middle;
 }
 
 void place(io::Soup& soup, const Frame& frame) {
   const DMat3 rotation = rotation_of(frame);
   for (DVec3& p : soup.positions) p = rotation * p;
   for (DVec3& n : soup.normals) n = rotation * n;
-  const double scale = frame.fit > 0 ? frame.fit / longest_side(soup.positions) : frame.scale;
+  const Bounds bounds = bounds_of(soup.positions);
+  const double scale = frame.fit > 0 ? frame.fit / longest_side(bounds) : frame.scale;
+  const DVec3 origin = origin_of(bounds, frame.origin);
   for (DVec3& p : soup.positions) {
-    p = scale * p;
+    p = scale * (p - origin);
     if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= io::kMaxModelCoordinate)) {
       throw Refusal(ImporterExit::kOutOfRange, "a coordinate beyond 1e9 m: choose a smaller scale");
     }

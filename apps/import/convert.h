@@ -18,6 +18,7 @@ struct Frame {
   UpAxis up = UpAxis::kY;       ///< Axis of the file; not kFormat.
   double scale = 1.0;
   double fit = 0.0;  ///< If positive, replaces `scale`.
+  ModelOrigin origin = ModelOrigin::kFile;
 };
 
 /// Returns the triangles of all nodes in Hooke's frame. Throws a Refusal for coordinates that are not finite,

@@ -1,6 +1,8 @@
-/// hooke-import FILE UP SCALE FIT reads one model file and writes it in the flat format to standard output.
+/// hooke-import FILE UP SCALE FIT ORIGIN reads one model file and writes it in the flat format to standard
+/// output.
 ///
-/// UP is format, x, y or z; SCALE is a number of meters per unit; FIT is a length in meters or "none". The
+/// UP is format, x, y or z; SCALE is a number of meters per unit; FIT is a length in meters or "none";
+/// ORIGIN is file, center or bottom. The
 /// exit code is an io::ImporterExit, and the reason is one line on standard error. The hooke library starts
 /// the program for each file. It limits memory and time, reads the file and those that belong to it, seals
 /// itself off from the system, and only then parses what it has read.
@@ -68,6 +70,7 @@ struct Arguments {
   UpAxis up = UpAxis::kFormat;
   double scale = 1.0;
   double fit = 0.0;
+  ModelOrigin origin = ModelOrigin::kFile;
 };
 
 double positive_number(std::string_view text, const char* name) {
@@ -80,7 +83,7 @@ double positive_number(std::string_view text, const char* name) {
 }
 
 Arguments parse(int count, char** words) {
-  if (count != 5) throw Refusal(ImporterExit::kOutOfRange, "usage: hooke-import FILE UP SCALE FIT");
+  if (count != 6) throw Refusal(ImporterExit::kOutOfRange, "usage: hooke-import FILE UP SCALE FIT ORIGIN");
   Arguments arguments = {.path = words[1]};
   constexpr std::array<std::string_view, 4> kUpWords = {"format", "x", "y", "z"};
   const auto* up = std::find(kUpWords.begin(), kUpWords.end(), std::string_view(words[2]));
@@ -88,6 +91,11 @@ Arguments parse(int count, char** words) {
   arguments.up = static_cast<UpAxis>(up - kUpWords.begin());
   arguments.scale = positive_number(words[3], "SCALE");
   if (std::string_view(words[4]) != "none") arguments.fit = positive_number(words[4], "FIT");
+  constexpr std::array<std::string_view, 3> kOriginWords = {"file", "center", "bottom"};
+  const auto* origin = std::find(kOriginWords.begin(), kOriginWords.end(), std::string_view(words[5]));
+  if (origin == kOriginWords.end())
+    throw Refusal(ImporterExit::kOutOfRange, "ORIGIN must be file, center or bottom");
+  arguments.origin = static_cast<ModelOrigin>(origin - kOriginWords.begin());
   return arguments;
 }
 
@@ -138,6 +146,7 @@ Model read_model(const Arguments& arguments) {
   if (arguments.up != UpAxis::kFormat) frame.up = arguments.up;
   frame.scale = arguments.scale;
   frame.fit = arguments.fit;
+  frame.origin = arguments.origin;
   const io::Soup soup = convert_scene(*scene, frame);
   return io::assemble_model(soup, kCrease);
 }

@@ -487,7 +487,12 @@ struct SolidDesc {
   /// Replaces the box by the inside of a closed surface: a lattice of cells whose outer points lie on the
   /// mesh. The mesh is carried along (World::surface).
   MeshId mesh = {};
-  Real cell = Real(0.1);  ///< Size of the lattice's cells, about [m], positive. Thinner parts are lost.
+  /// Size of the lattice's cells, about [m], positive. Parts thinner than a cell become as thick as one, and
+  /// parts that do not touch are joined by cells, so that the solid is one piece.
+  Real cell = Real(0.1);
+  /// Another mesh, which may be open, to be carried along and drawn in place of `mesh` or of the outer faces.
+  /// Shape matching of the vertices of `mesh` has none.
+  MeshId visual = {};
   std::vector<Vec3> points = {};  ///< Replace the box, with `tetrahedra`, in the solid's frame [m].
   /// Four indices into `points` for each tetrahedron, in any order; none may be flat.
   std::vector<std::array<std::uint32_t, 4>> tetrahedra = {};

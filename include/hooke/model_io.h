@@ -5,7 +5,9 @@
 #include "hooke/shape.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,13 +21,20 @@
 
 namespace hooke {
 
+/// The bytes of an image's file, shared by all that show it; null for none.
+using ImageBytes = std::shared_ptr<const std::vector<std::byte>>;
+
 /// How a surface looks.
 struct ModelMaterial {
   std::string name = {};                            ///< The name in the file; may be empty.
   std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear red, green and blue, each in [0, 1].
   float opacity = 1.0f;                             ///< Opacity; 1 hides what is behind. [0, 1]
   float shininess = 16.0f;                          ///< Blinn-Phong exponent.
-  std::string texture = {};  ///< Path of an image, which the color multiplies; empty for none.
+  /// Path of an image, which the color multiplies; of one in `image` its name; empty for none.
+  std::string texture = {};
+  /// The file of the image, where the model file holds it (.glb, data in a .gltf); null for a file of its
+  /// own.
+  ImageBytes image = {};
 };
 
 /// A vertex as it is drawn.
@@ -62,12 +71,20 @@ enum class UpAxis : std::uint8_t {
   kZ,       ///< The z axis.
 };
 
+/// Where the origin of a model's frame is put.
+enum class ModelOrigin : std::uint8_t {
+  kFile,    ///< Where the file has it.
+  kCenter,  ///< In the center of the bounding box.
+  kBottom,  ///< In the center of the lower face of the bounding box, so that the model stands on it.
+};
+
 /// How a file is brought into Hooke's frame.
 struct ImportOptions {
   UpAxis up = UpAxis::kFormat;  ///< The file's axis that becomes y.
   double scale = 1.0;           ///< Meters per unit of the file, positive.
   /// Replaces `scale`: the longest side of the bounding box becomes this long [m].
   std::optional<double> fit = {};
+  ModelOrigin origin = ModelOrigin::kFile;  ///< Where the origin is put, after the axes and the scale.
 };
 
 /// Reads a model: all nodes of all meshes, moved to their places. Keyframes, lights and cameras are left out.
@@ -77,8 +94,9 @@ struct ImportOptions {
 /// - Normals are the file's (from smoothing groups in .3ds) where they agree with the faces; else they are
 ///   made, flat where the surface turns more than 0.7 rad. .stl has none worth reading.
 /// - A texture is looked up by its bare name, upper and lower case being the same, in the model's own folder
-///   and nowhere else; one that is missing, or embedded in a .glb, is left out and the color stays. In .3ds
-///   and .obj the image stands for the color, which becomes white. Colors of vertices are not read.
+///   and nowhere else; one that is missing is left out and the color stays. One in the file itself (.glb)
+///   comes with the material. In .3ds and .obj the image stands for the color, which becomes white. Colors of
+///   vertices are not read.
 ///
 /// Errors name the path, and the reason in one line; no process, file or descriptor is left behind. Limits:
 /// 1 GiB and 10 s for the child, 15 s in all, 256 MiB for the file and those it needs, which must be regular
@@ -93,8 +111,9 @@ struct ImportOptions {
 
 /// Writes the drawn half of a model in meters: .obj (and .mtl beside it), .glb (y up), .stl or .3ds (z up),
 /// by the path's ending. It writes a temporary file, and flushes and renames it when it is complete: an Error
-/// leaves the old file. Images are named, not copied. .3ds keeps creases as smoothing groups and 8 bits a
-/// color; .stl keeps the shape alone.
+/// leaves the old file. PNG and JPEG images go into a .glb, others are copied beside the model, under another
+/// name if there is another file of that name; an image that cannot be read is only named. .3ds keeps creases
+/// as smoothing groups and 8 bits a color; .stl keeps the shape alone.
 ///
 /// Errors: another ending, a file that cannot be written, a model without triangles, with indices or parts
 /// out of range, or with a coordinate that is not finite.

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -58,7 +59,10 @@ struct SceneMesh {
   std::string file = {};             ///< Path relative to the scene file; empty if `mesh` has the triangles.
   ImportOptions import = {};         ///< How the file is brought into Hooke's frame.
   MeshTree tree = MeshTree::kBoxes;  ///< Structure for World::add_mesh.
-  MeshDesc mesh = {};                ///< Triangles in place of a file.
+  /// Voxels [m], positive, of which the surface that bodies collide by and that solids fill is made
+  /// (remesh_solid). Without it a mesh that is no solid is closed by default_voxel, with a warning.
+  std::optional<Real> voxel_size = {};
+  MeshDesc mesh = {};  ///< Triangles in place of a file.
   /// Names for places of every object that is made of the mesh, in its frame; point numbers are of vertices.
   std::vector<ConnectionPointDesc> connection_points = {};
 };
@@ -146,6 +150,7 @@ struct SceneBody {
   SceneTag tag = {};                  ///< Name, material, friction and copies.
   BodyDesc desc = {};                 ///< The body; its mesh, contact and parts come from below.
   std::string mesh = {};              ///< Name in Scene::meshes, for a mesh or a hull.
+  std::string visual = {};            ///< Name in Scene::meshes of what is drawn in place of the shape.
   std::vector<ScenePart> parts = {};  ///< Shapes of a compound, in place of desc.parts.
 };
 /// A rope.
@@ -168,6 +173,7 @@ struct SceneSolid {
   SceneTag tag = {};                ///< Name, material, friction, stepper and copies.
   SolidDesc desc = {};              ///< The solid; its mesh, pins and friction come from here.
   std::string mesh = {};            ///< Name in Scene::meshes; empty for a box of cells.
+  std::string visual = {};          ///< Name in Scene::meshes of what is drawn in place of `mesh` or the box.
   std::vector<ScenePin> pins = {};  ///< Points that are held.
 };
 /// Loose point masses and their springs.
@@ -375,7 +381,8 @@ template <class T>
 struct Loaded {
   std::optional<T> value = {};       ///< The value; nothing if there are errors.
   std::vector<Error> errors = {};    ///< Everything that is wrong, in the order of the file, at most 100.
-  std::vector<Error> warnings = {};  ///< What the file says in vain.
+  std::vector<Error> warnings = {};  ///< What the file says in vain, and what was made of models unasked.
+  std::vector<Error> notes = {};     ///< What was made of models as the file asks, with figures.
 
   /// Whether there is a value.
   explicit operator bool() const { return value.has_value(); }
@@ -450,14 +457,16 @@ struct SceneObject {
   std::vector<Part> parts = {};  ///< Shapes of a compound body.
   /// Radius of a rope's strand or of the first particle [m]; half the thickness of a cloth or solid.
   Real radius = Real(0);
-  double rest_length = 0;                   ///< Length of a rope at rest [m].
-  std::uint32_t columns = 0;                ///< Columns of a cloth's grid; 0 for a mesh.
-  std::uint32_t rows = 0;                   ///< Rows of a cloth's grid; 0 for a mesh.
-  HookKind hook_kind = HookKind::kBall;     ///< Kind of a hook.
-  std::array<std::string, 2> hooked = {};   ///< Names of what a hook holds, a and b; empty for the world.
-  bool broken = false;                      ///< Whether a hook has broken; its id is stale then.
-  BreakEvent broke = {};                    ///< How a hook broke, if it has.
-  std::shared_ptr<const Model> model = {};  ///< Model of a mesh body, cloth or solid; of a hull, its faces.
+  double rest_length = 0;                    ///< Length of a rope at rest [m].
+  std::uint32_t columns = 0;                 ///< Columns of a cloth's grid; 0 for a mesh.
+  std::uint32_t rows = 0;                    ///< Rows of a cloth's grid; 0 for a mesh.
+  HookKind hook_kind = HookKind::kBall;      ///< Kind of a hook.
+  std::array<std::string, 2> hooked = {};    ///< Names of what a hook holds, a and b; empty for the world.
+  bool broken = false;                       ///< Whether a hook has broken; its id is stale then.
+  BreakEvent broke = {};                     ///< How a hook broke, if it has.
+  std::shared_ptr<const Model> model = {};   ///< Model of a mesh body, cloth or solid; of a hull, its faces.
+  std::shared_ptr<const Model> visual = {};  ///< Model that is drawn in place of a body's shape; may be null.
+  double mesh_volume = 0;  ///< Volume of the closed surface that a solid fills [m^3]; 0 for others.
 };
 
 /// Positions of the points of a rope, a cloth, a solid or particles, as World::positions gives them; none for
@@ -473,6 +482,15 @@ struct SceneVerdict {
   std::string text = {};   ///< "height of 'rope' point 15 = 0.998, expected within 1 % of 1".
 };
 
+/// How a simulation is made.
+struct LoadOptions {
+  /// Folder for the convex parts of meshes, which take seconds to make: it is created, and read the next
+  /// time. Empty for none.
+  std::string cache = {};
+  /// Is called with what is done now and which part of it is done, from 0 to 1; may be empty.
+  std::function<void(std::string_view what, double part)> progress = {};
+};
+
 /// A World made from a scene, with its timeline and its expectations.
 class Simulation {
  public:
@@ -480,8 +498,9 @@ class Simulation {
   /// wrong with the scene, its files and its objects.
   ///
   /// A placement turns and moves the whole scene. Its timeline and its expectations remain in the scene's own
-  /// frame; only energies keep the world's origin as their zero.
-  [[nodiscard]] static Loaded<Simulation> create(Scene scene, const Placement& placement = {});
+  /// frame; only energies keep the world's origin as their zero. The options change no result.
+  [[nodiscard]] static Loaded<Simulation> create(Scene scene, const Placement& placement = {},
+                                                 const LoadOptions& options = {});
   ///@{
   /// Takes everything over. The Simulation moved from may only be destroyed or assigned to.
   Simulation(Simulation&&) noexcept;

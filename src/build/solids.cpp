@@ -264,12 +264,25 @@ Result<SolidBody> find_body(const SolidDesc& desc, const state::Tables& tables) 
   return is_matched(desc) ? take_vertices(surface) : fill_mesh(desc, surface);
 }
 
+/// Replaces the skin of a solid by a mesh that its tetrahedra carry along.
+Result<void> put_on_visual(const SolidDesc& desc, const state::Tables& tables, SolidBody& body) {
+  if (!desc.visual) return {};
+  const std::uint32_t row = tables.mesh_slots.find(desc.visual);
+  if (row == tables.mesh_slots.kNone || !tables.meshes[row])
+    return Error{ErrorCode::kStaleId, "solid.visual", "refers to no mesh that is in the world"};
+  if (body.mesh.tetrahedra.empty())
+    return Error{ErrorCode::kOutOfRange, "solid.visual", "needs tetrahedra, which shape matching has not"};
+  body.skin = skin_of(body.mesh, tables.meshes[row]->desc);
+  return {};
+}
+
 Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) {
   const Checks checks = is_box(desc) ? check_box(desc) : check(desc);
   if (!checks.good()) return checks.result().error();
   Result<SolidBody> found = find_body(desc, tables);
   if (!found) return found;
   SolidBody body = std::move(found).value();
+  if (const Result<void> put = put_on_visual(desc, tables, body); !put) return put.error();
   const Quaternion<double> rotation =
       normalize(Quaternion<double>{desc.rotation.x, desc.rotation.y, desc.rotation.z, desc.rotation.w});
   for (DVec3& p : body.mesh.points) p = desc.position + rotate(rotation, p);

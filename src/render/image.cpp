@@ -85,8 +85,15 @@ Result<void> write_png(const Image& image, const std::string& path) {
 Result<Image> load_image(const std::string& path, const ImageLimits& limits) {
   const auto bytes = read_file(path, limits.max_file_bytes);
   if (!bytes) return bytes.error();
-  const stbi_uc* data = bytes.value().data();
-  const int size = static_cast<int>(bytes.value().size());
+  return decode_image(std::as_bytes(std::span(bytes.value())), path, limits);
+}
+
+Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& path,
+                           const ImageLimits& limits) {
+  if (bytes.size() > limits.max_file_bytes)
+    return Error{ErrorCode::kLimitExceeded, path, "the image has too many bytes"};
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const int size = static_cast<int>(bytes.size());
   Image image;
   int channels = 0;
   if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,9 @@ struct ImageLimits {
 
 /// Reads PNG, JPEG, BMP or TGA. A file with transparency gives four channels, any other three.
 Result<Image> load_image(const std::string& path, const ImageLimits& limits = {});
+
+/// Reads the same from the bytes of a file; `name` stands in messages.
+Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
+                           const ImageLimits& limits = {});
 
 }  // namespace hooke::render

@@ -115,6 +115,63 @@ TEST_SUITE("io/model_export") {
     }
   }
 
+  TEST_CASE("a .glb holds its image, and what is made of it elsewhere has the image beside it") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    const std::string png = "\x89PNG\r\n\x1a\n and what follows";
+    Model model = still_life(true);
+    model.materials[1].texture = folder.file("my image.png", png);
+    std::filesystem::create_directory(folder / "away");
+    const Model held = round_trip(model, folder / "away/still.glb");
+    CHECK_FALSE(std::filesystem::exists(folder / "away/my image.png"));
+    REQUIRE(held.materials[1].image != nullptr);
+    CHECK(std::string(reinterpret_cast<const char*>(held.materials[1].image->data()),
+                      held.materials[1].image->size()) == png);
+    check_same_shape(model, held);
+    for (const std::string ending : {".obj", ".3ds"}) {
+      CAPTURE(ending);
+      std::filesystem::create_directory(folder / ("to" + ending));
+      const Model back = round_trip(held, folder / ("to" + ending + "/still" + ending));
+      CHECK(std::filesystem::path(back.materials[1].texture).parent_path() == folder / ("to" + ending));
+      CHECK(read_file(back.materials[1].texture) == png);
+    }
+  }
+
+  TEST_CASE("an image is copied beside the model, and no other file of its name is written over") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    Model model = still_life(true);
+    model.materials[1].texture = folder.file("my image.bmp", "BM first");
+    std::filesystem::create_directory(folder / "away");
+    (void)folder.file("away/my image.bmp", "BM another");
+    const Model back = round_trip(model, folder / "away/still.obj");
+    CHECK(read_file(folder / "away/my image.bmp") == "BM another");
+    CHECK(back.materials[1].texture == folder / "away/my image-2.bmp");
+    CHECK(read_file(back.materials[1].texture) == "BM first");
+    // The second time the copy is there already.
+    CHECK(round_trip(model, folder / "away/still.obj").materials[1].texture == back.materials[1].texture);
+    CHECK_FALSE(std::filesystem::exists(folder / "away/my image-3.bmp"));
+  }
+
+  TEST_CASE("the origin can be put in the center or the bottom of the box") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    REQUIRE(export_model(still_life(false), folder / "still.obj").has_value());
+    const auto bounds = [&](hooke::ModelOrigin origin) {
+      const auto model = import_model(folder / "still.obj", {.fit = 2.0, .origin = origin});
+      REQUIRE(model.has_value());
+      return measure(model.value().mesh);
+    };
+    const Measures center = bounds(hooke::ModelOrigin::kCenter);
+    CHECK(length(center.low + center.high) < 1e-6);
+    const Measures bottom = bounds(hooke::ModelOrigin::kBottom);
+    CHECK(std::abs(bottom.low.y) < 1e-6);
+    CHECK(std::abs(bottom.low.x + bottom.high.x) < 1e-6);
+    CHECK(length(bottom.high - bottom.low - (center.high - center.low)) < 1e-6);
+    const Measures file = bounds(hooke::ModelOrigin::kFile);
+    CHECK(length(file.low + file.high) > 1);
+  }
+
   TEST_CASE("creases and smooth places come back the same") {
     const auto importer = built_importer();
     const TemporaryFolder folder;

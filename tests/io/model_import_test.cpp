@@ -217,7 +217,10 @@ TEST_SUITE("io/model_import") {
     }
     if (const std::string path = sample("other/BoxTextured.glb"); !path.empty()) {
       check_bounds(measure(imported(path).mesh), {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
-      CHECK(imported(path).materials[0].texture.empty());  // embedded
+      const hooke::ModelMaterial material = imported(path).materials[0];
+      REQUIRE(material.image != nullptr);  // The file holds it: a PNG.
+      CHECK(std::to_integer<int>((*material.image)[1]) == 'P');
+      CHECK(material.texture.ends_with(".png"));
     }
     if (const std::string path = sample("other/cube.ply"); !path.empty()) {
       CHECK(measure(imported(path).mesh).volume == doctest::Approx(1));

@@ -142,7 +142,7 @@ TEST_SUITE("io/sandbox") {
     REQUIRE(pipe.has_value());
     // Nobody reads the pipe: it stands still in the middle of its answer.
     auto child =
-        hooke::process::Child::start({HOOKE_BUILT_IMPORTER, model, "format", "1", "none"},
+        hooke::process::Child::start({HOOKE_BUILT_IMPORTER, model, "format", "1", "none", "file"},
                                      {.output = pipe->write.number(), .error = pipe->write.number()});
     REQUIRE(child.has_value());
     CHECK(eventually([&] { return status_of(child->number(), "Seccomp:\t") == "2"; }));

@@ -65,7 +65,7 @@ constexpr const char* kEverything = R"({
     "wind": {"velocity": [1, 0, 0.1], "gust": 0.5, "side_gust": 0.25, "correlation_time": 0.7,
              "correlation_length": 3, "seed": 7, "gusts": "paper", "air_density": 1.1}},
   "meshes": {"file": {"file": "a/b.obj", "up": "x", "scale": 0.001},
-             "fit": {"file": "c.3ds", "fit": 0.4, "tree": "planes"},
+             "fit": {"file": "c.3ds", "fit": 0.4, "origin": "bottom", "voxel_size": 0.01, "tree": "planes"},
              "inline": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]],
                         "connection_points": {"tip": 2, "middle": [0.25, 0.25, 0]}}},
   "materials": {"silk": {"color": [0.1, 0.2, 0.3], "texture": "t.png", "shininess": 3, "opacity": 0.5,
@@ -73,7 +73,7 @@ constexpr const char* kEverything = R"({
                          "spinning_friction": 0.002}, "plain": {}},
   "material_pairs": [{"a": "silk", "b": "plain", "friction": 0.3, "static_friction": 0.4, "restitution": 0.75}],
   "bodies": [
-    {"name": "ground", "material": "silk", "shape": {"half_space": {}}, "friction": 0.25,
+    {"name": "ground", "material": "silk", "shape": {"half_space": {}}, "friction": 0.25, "visual": "file",
      "connection_points": {"drain": [1, 0, 2]}},
     {"shape": {"sphere": {"radius": 0.3}}, "position": [1, 2, 3], "rotation": [0, 0, 1, 0], "collides": false,
      "array": {"grid": [2, 3, 4], "spacing": [1, 0.5, 0.25]}},
@@ -140,6 +140,7 @@ constexpr const char* kEverything = R"({
     {"a": "cloth", "a_points": [0, 1], "b": "cloth.right",
      "array": {"grid": [2, 1, 1], "spacing": [1, 2, 1]}}],
   "solids": [
+    {"mesh": "inline", "visual": "fit"},
     {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
      "damping": 0.0625, "elasticity": "shape_matching", "match_hz": 5, "match_damping_ratio": 0.5, "yield_stress": 500, "thickness": 0.25, "pins": [{"topmost": 0.5}]},
     {"mesh": "inline", "cell": 0.25, "position": [0, 4, 0], "total_mass": 2}],

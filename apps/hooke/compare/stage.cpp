@@ -1,5 +1,6 @@
 #include "hooke/compare/stage.h"
 
+#include "hooke/command_line.h"
 #include "hooke/text_of.h"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ const SceneObject* find_object(const Simulation& simulation, const std::string& 
 }
 
 Result<Player> make_solver_player(const Stage& stage, double dt) {
-  Loaded<Simulation> built = Simulation::create(stage.scene());
+  Loaded<Simulation> built = Simulation::create(stage.scene(), {}, load_options());
   if (!built) return built.errors.front();
   const auto simulation = std::make_shared<Simulation>(std::move(*built.value));
   const SceneObject object = *simulation->find(stage.object.name);  // Ids belong to one world.
@@ -94,7 +95,7 @@ Result<Stage> make_stage(Scene scene, const std::string& point) {
   scene.timeline.clear();
   scene.expect.clear();
   const std::string path = scene.path;
-  Loaded<Simulation> built = Simulation::create(std::move(scene));
+  Loaded<Simulation> built = Simulation::create(std::move(scene), {}, load_options());
   if (!built) return built.errors.front();
   const PointWords words = cut(point, *built.value);
   const SceneObject* object = find_object(*built.value, words.object);

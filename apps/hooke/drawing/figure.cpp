@@ -54,16 +54,19 @@ render::Color usual_color(SceneObject::Kind kind) {
 Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoader& textures) {
   Finish finish = {color_of(look.color), nullptr, look.opacity, look.shininess};
   if (look.texture.empty()) return finish;
-  finish.texture = textures((std::filesystem::path(scene.path).parent_path() / look.texture).string());
+  finish.texture =
+      textures((std::filesystem::path(scene.path).parent_path() / look.texture).string(), nullptr);
   return finish;
 }
+
+const std::string kModelsOwn = {};  // In place of a material's name: the model has its own.
 
 std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& textures) {
   std::vector<PaintedRange> ranges;
   for (const ModelPart& part : model.parts) {
     const ModelMaterial& material = model.materials[part.material];
     Finish finish = {color_of(material.color), nullptr, material.opacity, material.shininess};
-    if (!material.texture.empty()) finish.texture = textures(material.texture);
+    if (!material.texture.empty()) finish.texture = textures(material.texture, material.image);
     if (part.count > 0) ranges.push_back({part.first, part.count, finish});
   }
   return ranges;
@@ -112,6 +115,11 @@ bool is_slab(const Shape& shape) {
 
 std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object,
                                    const TextureLoader& textures, BodyGeometries& geometries) {
+  if (object.visual != nullptr) {
+    const Look look = {object.kind, kModelsOwn, object.look, object.visual.get()};
+    return {{.geometry = geometries.find(Shape::of_mesh({}), object.visual),
+             .ranges = ranges_of(scene, look, textures)}};
+  }
   if (object.shape.kind != ShapeKind::kCompound) {
     const Look look = {object.kind, object.material, object.look,
                        drawn_materials(object.shape, object.model)};
@@ -294,7 +302,9 @@ Figure make_figure(const Simulation& simulation, const SceneObject& object, cons
     figure.half_space = object.shape.kind == ShapeKind::kHalfSpace;
     return figure;
   }
-  const Look look = {object.kind, object.material, object.look, object.model.get()};
+  // What is drawn in place of the solid keeps its own materials; the solid's only says how it slides.
+  const std::string& material = object.visual != nullptr ? kModelsOwn : object.material;
+  const Look look = {object.kind, material, object.look, object.model.get()};
   figure.ranges = ranges_of(simulation.scene(), look, textures);
   if (object.kind == SceneObject::Kind::kCloth) prepare_cloth(simulation, object, figure);
   if (object.kind == SceneObject::Kind::kSolid) prepare_solid(simulation, object, figure);

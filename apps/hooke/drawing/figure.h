@@ -59,8 +59,9 @@ struct Figure {
   std::vector<FigureLoad> loads;        ///< Weights of ropes and cloths.
 };
 
-/// Returns the image of a path, or null.
-using TextureLoader = std::function<std::shared_ptr<const render::Image>(const std::string&)>;
+/// Returns the image of a path, or of the bytes if there are any, or null.
+using TextureLoader =
+    std::function<std::shared_ptr<const render::Image>(const std::string& path, const ImageBytes& bytes)>;
 
 /// Prepares everything about an object of a simulation that does not change.
 Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,

@@ -37,10 +37,11 @@ DVec3 origin_near(DVec3 place) {
 
 }  // namespace
 
-std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::string& path) {
-  const auto [entry, is_new] = textures_.try_emplace(path);
+std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::string& path,
+                                                                const ImageBytes& bytes) {
+  const auto [entry, is_new] = textures_.try_emplace({path, bytes});
   if (!is_new) return entry->second;
-  auto image = render::load_image(path);
+  auto image = bytes ? render::decode_image(*bytes, path) : render::load_image(path);
   if (image) {
     entry->second = std::make_shared<render::Image>(std::move(image).value());
   } else {
@@ -59,7 +60,9 @@ std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, 
   std::shared_ptr<Figure>& figure = figures_[{object.kind, slot, generation}];
   if (figure == nullptr) {
     figure = std::make_shared<Figure>(make_figure(
-        simulation, object, [this](const std::string& path) { return find_texture(path); }, geometries_));
+        simulation, object,
+        [this](const std::string& path, const ImageBytes& bytes) { return find_texture(path, bytes); },
+        geometries_));
   }
   return figure;
 }

@@ -65,7 +65,7 @@ class SceneDrawing {
   using Key = std::tuple<SceneObject::Kind, std::uint32_t, std::uint32_t>;
 
   std::shared_ptr<Figure> find_figure(const Simulation& simulation, const SceneObject& object);
-  std::shared_ptr<const render::Image> find_texture(const std::string& path);
+  std::shared_ptr<const render::Image> find_texture(const std::string& path, const ImageBytes& bytes);
   [[nodiscard]] Viewpoint viewpoint(double time) const;
   [[nodiscard]] State between(double time) const;
   void measure(const State& state);
@@ -76,7 +76,8 @@ class SceneDrawing {
 
   BodyGeometries geometries_;
   std::map<Key, std::shared_ptr<Figure>> figures_;
-  std::map<std::string, std::shared_ptr<const render::Image>> textures_;
+  /// By path, or by the bytes of an image that a model holds.
+  std::map<std::pair<std::string, ImageBytes>, std::shared_ptr<const render::Image>> textures_;
   std::vector<std::string> warnings_;
   std::optional<SceneCamera> camera_;
   std::optional<Viewpoint> automatic_;  ///< View of the first state, for scenes without a camera.

@@ -5,6 +5,7 @@
 #include "geometry/convex/convex_hull.h"
 #include "geometry/convex/mass_properties.h"
 #include "geometry/mesh/simplify.h"
+#include "geometry/solid/parts_listener.h"
 #include "geometry/solid/solid_cut.h"
 #include "geometry/triangle_mesh.h"
 
@@ -250,6 +251,12 @@ void join_parts(const JoinLimits& limits, double on_plane, std::vector<Part>& pa
   }
 }
 
+/// Tells the listener how many of the parts there may be are made.
+void advance(std::size_t parts, std::size_t parts_max) {
+  geometry::PartsListener* listener = geometry::PartsListening::current();
+  if (listener != nullptr) listener->advance(static_cast<double>(parts) / static_cast<double>(parts_max));
+}
+
 /// Cuts the solid until its parts are good, and joins those that were cut in vain.
 Result<std::vector<Part>> find_parts(const MeshDesc& mesh, double concavity_max, std::size_t parts_max) {
   Solid solid;
@@ -265,6 +272,7 @@ Result<std::vector<Part>> find_parts(const MeshDesc& mesh, double concavity_max,
     const std::size_t deepest = find_deepest(parts, concavity_max);
     if (deepest == parts.size()) break;
     cut_part(deepest, solid, parts);
+    advance(parts.size(), parts_max);
   }
   // Some cuts may have turned out needless; those that leave no trace are undone first.
   for (const double share : {0.01, 1.0})
@@ -283,6 +291,11 @@ Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concav
     return Error{.where = "parts_max", .message = std::to_string(parts_max) + " is outside [1, 256]"};
   }
   if (const Result<void> solid = geometry::validate_solid(mesh); !solid) return solid.error();
+  geometry::PartsListener* listener = geometry::PartsListening::current();
+  if (listener != nullptr) {
+    std::vector<MeshDesc> known = listener->recall(mesh, concavity_max, parts_max);
+    if (!known.empty()) return known;
+  }
   const bool is_fine = mesh.triangles.size() > kTrianglesMax;
   Result<std::vector<Part>> parts =
       find_parts(is_fine ? geometry::simplify(mesh, kTrianglesSimplified) : mesh,
@@ -291,6 +304,10 @@ Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concav
   std::vector<MeshDesc> meshes;
   std::transform(parts.value().begin(), parts.value().end(), std::back_inserter(meshes),
                  [](const Part& part) { return geometry::mesh_of(part.hull); });
+  if (listener != nullptr) {
+    listener->advance(1);
+    listener->keep(mesh, concavity_max, parts_max, meshes);
+  }
   return meshes;
 }
 

@@ -71,8 +71,13 @@ std::string number_text(double value) {
 std::vector<std::string> arguments(const std::string& program, const std::string& path,
                                    const ImportOptions& options) {
   constexpr std::array<const char*, 4> kUpWords = {"format", "x", "y", "z"};
-  return {program, path, kUpWords[static_cast<std::size_t>(options.up)], number_text(options.scale),
-          options.fit ? number_text(*options.fit) : "none"};
+  constexpr std::array<const char*, 3> kOriginWords = {"file", "center", "bottom"};
+  return {program,
+          path,
+          kUpWords[static_cast<std::size_t>(options.up)],
+          number_text(options.scale),
+          options.fit ? number_text(*options.fit) : "none",
+          kOriginWords[static_cast<std::size_t>(options.origin)]};
 }
 
 /// A Stream is one pipe's end and the bytes that came out of it.

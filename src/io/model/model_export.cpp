@@ -10,6 +10,8 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <memory>
 #include <set>
 #include <string>
 #include <system_error>
@@ -58,21 +60,73 @@ bool has_uvs(const Model& model) {
 
 namespace {
 
-Result<void> export_checked(const Model& model, const std::string& path) {
+namespace fs = std::filesystem;
+
+/// Returns the bytes of a file of at most 64 MiB; null if there is none.
+ImageBytes read_image_file(const fs::path& path) {
+  std::error_code code;
+  const auto size = fs::file_size(path, code);
+  if (code || !fs::is_regular_file(path, code) || size == 0 || size > io::kMaxImageSize) return nullptr;
+  std::vector<std::byte> bytes(size);
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) return nullptr;
+  return std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+}
+
+/// Writes an image into a folder, under another name if there is another file of that name. Returns the name.
+Result<std::string> put_image(const fs::path& folder, const std::string& name, const ImageBytes& bytes) {
+  const fs::path wanted(name);
+  for (int number = 2; number < 1000; ++number) {
+    const std::string tried =
+        number == 2 ? name
+                    : wanted.stem().string() + "-" + std::to_string(number - 1) + wanted.extension().string();
+    std::error_code code;
+    if (fs::exists(folder / tried, code)) {
+      const ImageBytes there = read_image_file(folder / tried);
+      if (there == nullptr || *there != *bytes) continue;
+      return tried;
+    }
+    if (auto written = process::write_file((folder / tried).string(), *bytes); !written)
+      return written.error();
+    return tried;
+  }
+  return Error{ErrorCode::kFileNotWritable, (folder / name).string(), "too many files of this name"};
+}
+
+/// Returns the model with its images read, and written beside the file at `path` where the file cannot hold
+/// them.
+Result<Model> with_images(Model model, const std::string& path, bool can_hold) {
+  for (ModelMaterial& material : model.materials) {
+    const std::string name = io::image_name(material);
+    if (name.empty()) continue;
+    if (!material.image) material.image = read_image_file(material.texture);
+    if (!material.image || (can_hold && io::is_gltf_image(*material.image))) continue;
+    Result<std::string> put = put_image(fs::path(path).parent_path(), name, material.image);
+    if (!put) return put.error();
+    material.texture = put.value();
+  }
+  return model;
+}
+
+Result<void> export_checked(const Model& given, const std::string& path) {
   if (path.empty() || path.find('\0') != std::string::npos) {
     return Error{ErrorCode::kFileNotWritable, path, "not a file name"};
   }
-  if (const auto sound = io::check_model(model); !sound) {
+  if (const auto sound = io::check_model(given); !sound) {
     return Error{sound.error().code, path, "the model cannot be written: " + sound.error().message};
   }
   const std::filesystem::path file(path);
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".stl") return process::write_file(path, io::write_stl(model));
+  if (ending == ".stl") return process::write_file(path, io::write_stl(given));
+  if (ending != ".glb" && ending != ".3ds" && ending != ".obj")
+    return Error{ErrorCode::kOutOfRange, path, "not one of .obj .stl .glb .3ds"};
+  const Result<Model> made = with_images(given, path, ending == ".glb");
+  if (!made) return made.error();
+  const Model& model = made.value();
   if (ending == ".glb") return process::write_file(path, io::write_glb(model));
   if (ending == ".3ds") return process::write_file(path, io::write_3ds(model));
-  if (ending != ".obj") return Error{ErrorCode::kOutOfRange, path, "not one of .obj .stl .glb .3ds"};
   std::filesystem::path library = file;
   library.replace_extension(".mtl");
   const io::ObjText text = io::write_obj(model, library.filename().string());

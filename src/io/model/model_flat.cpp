@@ -12,7 +12,8 @@ namespace hooke::io {
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'h', 'o', 'o', 'k', 'e', 'm', 'd', 'l'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kNoImage = 0xFFFFFFFF;
 // Tolerance of a squared length; rounding to float is a thousand times less.
 constexpr float kUnitTolerance = 1e-3f;
 
@@ -23,7 +24,7 @@ struct Header {
   std::uint32_t index_count = 0;
   std::uint32_t part_count = 0;
   std::uint32_t material_count = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t image_count = 0;
 };
 static_assert(sizeof(Header) == 32 && std::is_trivially_copyable_v<Header>);
 static_assert(sizeof(ModelVertex) == 32 && std::is_trivially_copyable_v<ModelVertex>);
@@ -35,8 +36,9 @@ struct MaterialRecord {
   float shininess = 0.0f;
   std::uint16_t name_size = 0;
   std::uint16_t texture_size = 0;
+  std::uint32_t image = 0;  // Number of its image, or kNoImage.
 };
-static_assert(sizeof(MaterialRecord) == 24 && std::is_trivially_copyable_v<MaterialRecord>);
+static_assert(sizeof(MaterialRecord) == 28 && std::is_trivially_copyable_v<MaterialRecord>);
 
 Error wrong(std::string message) {
   return {.code = ErrorCode::kOutOfRange, .message = std::move(message)};
@@ -135,9 +137,22 @@ class Reader {
   std::span<const std::byte> rest_;
 };
 
-bool take_material(Reader& reader, ModelMaterial& material) {
+bool take_images(Reader& reader, std::uint32_t count, std::vector<ImageBytes>& images) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t size = 0;
+    std::vector<std::byte> bytes;
+    if (!reader.take(&size, sizeof(size)) || size > kMaxImageSize) return false;
+    if (!reader.take_column(bytes, size)) return false;
+    images.push_back(std::make_shared<const std::vector<std::byte>>(std::move(bytes)));
+  }
+  return true;
+}
+
+bool take_material(Reader& reader, const std::vector<ImageBytes>& images, ModelMaterial& material) {
   MaterialRecord record;
   if (!reader.take(&record, sizeof(record))) return false;
+  if (record.image != kNoImage && record.image >= images.size()) return false;
+  if (record.image != kNoImage) material.image = images[record.image];
   material.color = record.color;
   material.opacity = record.opacity;
   material.shininess = record.shininess;
@@ -201,10 +216,16 @@ Result<void> check_model(const Model& model) {
 }
 
 std::vector<std::byte> write_flat_model(const Model& model) {
+  std::vector<ImageBytes> images;  // Each once, however many materials share it.
+  for (const ModelMaterial& material : model.materials) {
+    if (material.image && std::find(images.begin(), images.end(), material.image) == images.end())
+      images.push_back(material.image);
+  }
   const Header header = {.vertex_count = static_cast<std::uint32_t>(model.vertices.size()),
                          .index_count = static_cast<std::uint32_t>(model.indices.size()),
                          .part_count = static_cast<std::uint32_t>(model.parts.size()),
-                         .material_count = static_cast<std::uint32_t>(model.materials.size())};
+                         .material_count = static_cast<std::uint32_t>(model.materials.size()),
+                         .image_count = static_cast<std::uint32_t>(images.size())};
   std::vector<std::byte> bytes;
   bytes.reserve(sizeof(Header) + model.vertices.size() * sizeof(ModelVertex) + model.indices.size() * 4 +
                 model.parts.size() * sizeof(ModelPart) + model.materials.size() * 64);
@@ -212,12 +233,22 @@ std::vector<std::byte> write_flat_model(const Model& model) {
   put_bytes(bytes, model.vertices.data(), model.vertices.size() * sizeof(ModelVertex));
   put_bytes(bytes, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
   put_bytes(bytes, model.parts.data(), model.parts.size() * sizeof(ModelPart));
+  for (const ImageBytes& image : images) {
+    const auto size = static_cast<std::uint32_t>(image->size());
+    put_bytes(bytes, &size, sizeof(size));
+    put_bytes(bytes, image->data(), image->size());
+  }
   for (const ModelMaterial& material : model.materials) {
-    const MaterialRecord record = {.color = material.color,
-                                   .opacity = material.opacity,
-                                   .shininess = material.shininess,
-                                   .name_size = static_cast<std::uint16_t>(material.name.size()),
-                                   .texture_size = static_cast<std::uint16_t>(material.texture.size())};
+    const MaterialRecord record = {
+        .color = material.color,
+        .opacity = material.opacity,
+        .shininess = material.shininess,
+        .name_size = static_cast<std::uint16_t>(material.name.size()),
+        .texture_size = static_cast<std::uint16_t>(material.texture.size()),
+        .image = material.image
+                     ? static_cast<std::uint32_t>(std::find(images.begin(), images.end(), material.image) -
+                                                  images.begin())
+                     : kNoImage};
     put_bytes(bytes, &record, sizeof(record));
     put_bytes(bytes, material.name.data(), material.name.size());
     put_bytes(bytes, material.texture.data(), material.texture.size());
@@ -242,8 +273,13 @@ Result<Model> read_flat_model(std::span<const std::byte> bytes) {
       !reader.take_column(model.parts, header.part_count)) {
     return wrong("a flat model that ends early");
   }
+  std::vector<ImageBytes> images;
+  if (header.image_count > header.material_count || !take_images(reader, header.image_count, images)) {
+    return wrong("a flat model with a bad image");
+  }
   for (std::uint32_t i = 0; i < header.material_count; ++i) {
-    if (!take_material(reader, model.materials.emplace_back())) return wrong("a flat model that ends early");
+    if (!take_material(reader, images, model.materials.emplace_back()))
+      return wrong("a flat model that ends early");
     if (!is_bare_file_name(model.materials.back().texture)) return wrong("a texture that is no file name");
   }
   if (!reader.is_empty()) return wrong("a flat model with bytes left over");

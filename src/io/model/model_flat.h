@@ -11,15 +11,16 @@
 #include <vector>
 
 /// \file
-/// Defines the flat format in which `hooke-import` passes a model on: a header, then vertices, indices, parts
-/// and materials, little-endian, with nothing between them. Its reader trusts no byte, because the file that
-/// the importer parsed may have taken it over.
+/// Defines the flat format in which `hooke-import` passes a model on: a header, then vertices, indices,
+/// parts, images and materials, little-endian, with nothing between them. Its reader trusts no byte, because
+/// the file that the importer parsed may have taken it over.
 
 namespace hooke::io {
 
 inline constexpr std::uint32_t kMaxModelVertices = 1u << 24;
 inline constexpr std::uint32_t kMaxModelTriangles = 1u << 25;
 inline constexpr std::uint32_t kMaxModelMaterials = 1u << 16;
+inline constexpr std::size_t kMaxImageSize = std::size_t{64} << 20;  ///< Bytes of an image in a model.
 inline constexpr std::size_t kMaxModelText = 255;  ///< Bytes of the name of a material or a texture.
 /// Largest coordinate of either sign [m], so that squares stay far from overflow.
 inline constexpr float kMaxModelCoordinate = 1e9f;

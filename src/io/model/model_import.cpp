@@ -54,7 +54,7 @@ std::string find_image(const fs::path& folder, const std::string& name) {
 void find_textures(Model& model, const fs::path& path) {
   const std::string ending = lower(path.extension().string());
   for (ModelMaterial& material : model.materials) {
-    if (material.texture.empty()) continue;
+    if (material.texture.empty() || material.image) continue;
     material.texture = find_image(path.parent_path(), material.texture);
     // glTF multiplies image and color; in the older formats the image replaces the color.
     const bool replaces_color = ending != ".gltf" && ending != ".glb";
@@ -69,6 +69,9 @@ Result<void> check_options(const ImportOptions& options) {
   }
   if (options.fit && !is_size(*options.fit)) {
     return Error{ErrorCode::kOutOfRange, "fit", "the size to fit must be positive and finite"};
+  }
+  if (options.origin > ModelOrigin::kBottom) {
+    return Error{ErrorCode::kOutOfRange, "origin", "not one of file, center, bottom"};
   }
   if (options.up > UpAxis::kZ) return Error{ErrorCode::kOutOfRange, "up", "not one of format, x, y, z"};
   return {};

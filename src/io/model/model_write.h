@@ -12,7 +12,7 @@
 
 /// \file
 /// Writes mesh formats, each from a model that `check_model` accepts to the bytes of a file, in meters. The
-/// same model gives the same bytes. Images are referred to by their bare names, not copied.
+/// same model gives the same bytes. Images of their own files are referred to by their bare names.
 
 namespace hooke::io {
 
@@ -63,7 +63,11 @@ struct ObjText {
 /// Writes the binary form with z up. It has no place for materials, texture coordinates and smooth normals.
 [[nodiscard]] Bytes write_stl(const Model& model);
 
-/// Writes one mesh with a primitive for each part. The image is referred to by its name beside the file.
+/// Whether glTF can hold the image: a PNG or a JPEG, by its first bytes.
+[[nodiscard]] bool is_gltf_image(const std::vector<std::byte>& bytes);
+
+/// Writes one mesh with a primitive for each part. Images that `is_gltf_image` accepts are held in the file;
+/// others are referred to by their names beside it.
 [[nodiscard]] Bytes write_glb(const Model& model);
 
 /// Writes with z up, and smoothing groups from the creases of the normals. Objects hold at most 65535

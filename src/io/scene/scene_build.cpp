@@ -1,4 +1,5 @@
 #include "geometry/convex/convex_hull.h"
+#include "geometry/solid/tetrahedral_mesh.h"
 #include "io/scene/scene_check.h"
 #include "io/scene/scene_data.h"
 #include "io/scene/scene_source.h"
@@ -33,7 +34,13 @@ class Builder {
   [[nodiscard]] Real friction_of(const SceneTag& tag) const;
   [[nodiscard]] ContactDesc surface_of(const std::string& material, ContactDesc surface) const;
   /// Fills in what a body's description names: its material, its mesh, its parts.
-  [[nodiscard]] BodyDesc resolve(const SceneBody& body) const;
+  [[nodiscard]] BodyDesc resolve(const SceneBody& body);
+  /// Returns what a shape of this kind collides by: the mesh itself, or a closed surface made of it.
+  MeshId mesh_of(ShapeKind kind, const std::string& name, bool moves);
+  /// Returns the closed surface of a mesh. If there is none it says why, and returns null.
+  MeshId solid_mesh_of(const std::string& name);
+  /// Says what was added to the cells of a solid so that it is one piece.
+  void note_additions(const SolidDesc& desc, const std::string& mesh, const std::string& path);
   /// Adds the connection points of an object. Those of a mesh that it is made of are placed in its frame,
   /// under other names.
   void add_places_of(const std::string& mesh, Vec3 position, Quat rotation,
@@ -90,19 +97,30 @@ ContactDesc Builder::surface_of(const std::string& name, ContactDesc surface) co
   return surface;
 }
 
-BodyDesc Builder::resolve(const SceneBody& body) const {
-  const auto mesh_of = [&](const std::string& name) {
-    const auto found = data_.models.find(name);
-    return found == data_.models.end() ? MeshId{} : found->second.id;
-  };
+MeshId Builder::mesh_of(ShapeKind kind, const std::string& name, bool moves) {
+  const auto found = data_.models.find(name);
+  if (found == data_.models.end()) return {};
+  if (kind != ShapeKind::kMesh) return found->second.id;
+  return moves || is_made_of_voxels(data_.scene, name) ? solid_mesh_of(name) : found->second.id;
+}
+
+MeshId Builder::solid_mesh_of(const std::string& name) {
+  const Result<MeshId> solid = find_solid_mesh(data_, name);
+  if (solid) return solid.value();
+  fail("meshes." + name + solid.error().where, solid.error().code, solid.error().message);
+  return {};
+}
+
+BodyDesc Builder::resolve(const SceneBody& body) {
+  const bool moves = body.desc.kind == BodyKind::kDynamic;
   BodyDesc desc = body.desc;
   desc.contact = surface_of(body.tag.material, desc.contact);
   desc.contact.friction = friction_of(body.tag);
-  desc.shape.mesh = mesh_of(body.mesh);
+  desc.shape.mesh = mesh_of(desc.shape.kind, body.mesh, moves);
   add_places_of(body.mesh, {}, {}, desc.connection_points);
   for (const ScenePart& part : body.parts) {
     PartDesc made = part.desc;
-    made.shape.mesh = mesh_of(part.mesh);
+    made.shape.mesh = mesh_of(made.shape.kind, part.mesh, moves);
     made.contact = part.material.empty() ? desc.contact : surface_of(part.material, made.contact);
     desc.parts.push_back(made);
     add_places_of(part.mesh, made.position, normalize(made.rotation), desc.connection_points);
@@ -292,7 +310,9 @@ double length_of(const std::vector<DVec3>& points) {
 }
 
 void Builder::build(const SceneBody& body, const std::string& path) {
+  const std::size_t before = errors_.size();
   BodyDesc desc = resolve(body);
+  if (errors_.size() > before) return;
   const std::shared_ptr<const Model> model = drawn_model(body.desc.shape.kind, body.mesh);
   const std::vector<SceneObject::Part> parts = drawn_parts(body);
   for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
@@ -303,6 +323,7 @@ void Builder::build(const SceneBody& body, const std::string& path) {
     object.shape = desc.shape;
     object.parts = parts;
     object.model = model;
+    if (!body.visual.empty()) object.visual = data_.models[body.visual].model;
     if (!keep(object, &SceneObject::body, data_.world.add_body(placed(desc, data_.placement)))) return;
   }
 }
@@ -353,13 +374,38 @@ void Builder::build(const SceneCloth& cloth, const std::string& path) {
   }
 }
 
+void Builder::note_additions(const SolidDesc& desc, const std::string& mesh, const std::string& path) {
+  const auto cell = static_cast<double>(desc.cell);
+  // What fill_solid refuses, the world reports.
+  const auto additions = geometry::measure_additions(data_.solid_surfaces[mesh], cell);
+  if (!additions || additions.value().thin + additions.value().bridges == 0) return;
+  const geometry::CellAdditions& added = additions.value();
+  std::string text = "is thinner than its cells in places: " + std::to_string(added.thin) +
+                     " cells were added along thin parts, which are as thick as a cell now";
+  if (added.thin == 0) text = "has parts that do not hold together in its cells";
+  text += ", and " + std::to_string(added.bridges) + " to join " + std::to_string(added.pieces) +
+          " pieces; a smaller 'cell' needs fewer";
+  data_.notes.push_back(
+      error_at(data_.scene.source.get(), path + ".cell", ErrorCode::kOutOfRange, std::move(text)));
+}
+
 void Builder::build(const SceneSolid& solid, const std::string& path) {
   SolidDesc desc = solid.desc;
+  const std::string& visual = solid.visual.empty() ? solid.mesh : solid.visual;
   std::shared_ptr<const Model> model;
+  double volume = 0;
   if (!solid.mesh.empty()) {
-    desc.mesh = data_.models[solid.mesh].id;
-    model = data_.models[solid.mesh].model;
+    const bool is_filled = desc.elasticity == SolidDesc::Elasticity::kTetrahedra;
+    desc.mesh = is_filled ? solid_mesh_of(solid.mesh) : data_.models[solid.mesh].id;
+    if (!desc.mesh) return;
+    if (is_filled) note_additions(desc, solid.mesh, path);
+    volume = data_.models[solid.mesh].volume;
     add_places_of(solid.mesh, {}, {}, desc.connection_points);
+  }
+  if (!visual.empty()) {
+    model = data_.models[visual].model;
+    // What is drawn is carried along unless it is the filled surface itself, which is so anyway.
+    if (data_.models[visual].id != desc.mesh) desc.visual = data_.models[visual].id;
   }
   desc.contact.friction = friction_of(solid.tag);
   for (std::size_t i = 0; i < solid.tag.array.count() && !full(); ++i) {
@@ -367,6 +413,8 @@ void Builder::build(const SceneSolid& solid, const std::string& path) {
     SceneObject object = make_object(solid.tag, SceneObject::Kind::kSolid, path, i);
     object.radius = Real(0.5) * desc.thickness;
     object.model = model;
+    object.mesh_volume = volume;
+    if (!solid.visual.empty()) object.visual = model;
     const Result<SolidId> added = data_.world.add_solid(placed(desc, data_.placement));
     if (!keep(object, &SceneObject::solid, added)) return;
     // The points of a solid made of a mesh are known only now.
@@ -509,31 +557,6 @@ void Builder::build(const SceneSeam& seam, const std::string& path) {
   }
 }
 
-Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
-  if (mesh.file.empty()) return model_of(mesh.mesh);
-  const Result<std::string> file = locate_file(scene.path, mesh.file);
-  if (!file) return file.error();
-  return import_model(file.value(), mesh.import);
-}
-
-/// Returns the connection points of a mesh, all as positions, because an object made of it has its points in
-/// another order. Indices are those of vertices as they stand in the scene, or as the model was read.
-Result<std::vector<ConnectionPointDesc>> places_of(const SceneMesh& mesh, const MeshDesc& model) {
-  const MeshDesc& read = mesh.file.empty() ? mesh.mesh : model;
-  std::vector<ConnectionPointDesc> places = mesh.connection_points;
-  for (ConnectionPointDesc& place : places) {
-    if (!place.point) continue;
-    if (*place.point >= read.positions.size()) {
-      return Error{ErrorCode::kOutOfRange, "mesh.connection_points." + place.name,
-                   std::to_string(*place.point) + " is out of range, must be 0 to " +
-                       std::to_string(read.positions.size() - 1)};
-    }
-    place.position = vector_cast<double>(read.positions[*place.point]);
-    place.point.reset();
-  }
-  return places;
-}
-
 template <class T>
 void build_list(Builder& builder, const std::vector<T>& list, const std::string& name) {
   for (std::size_t i = 0; i < list.size(); ++i) builder.build(list[i], indexed(name, i));
@@ -555,31 +578,6 @@ WorldDesc world_of(const Scene& scene) {
     desc.materials.back().b = material_number(scene, pair.b);
   }
   return desc;
-}
-
-void build_meshes(SimulationData& data, std::vector<Error>& errors) {
-  for (const SceneMesh& mesh : data.scene.meshes) {
-    const std::string path = "meshes." + mesh.name;
-    Result<Model> read = read_model(data.scene, mesh);
-    if (!read) {
-      errors.push_back(
-          error_at(data.scene.source.get(), path + ".file", read.error().code, read.error().message));
-      continue;
-    }
-    auto model = std::make_shared<Model>(std::move(read).value());
-    const Result<MeshId> added = data.world.add_mesh(model->mesh, mesh.tree);
-    if (!added) {
-      errors.push_back(scene_error(data.scene, path, added.error()));
-      continue;
-    }
-    const Result<std::vector<ConnectionPointDesc>> places = places_of(mesh, model->mesh);
-    if (!places) {
-      errors.push_back(scene_error(data.scene, path, places.error()));
-      continue;
-    }
-    data.models[mesh.name] = {
-        .id = added.value(), .model = std::move(model), .connection_points = places.value()};
-  }
 }
 
 void build_objects(const SceneObjects& objects, const std::string& prefix, SimulationData& data,

@@ -234,6 +234,7 @@ void Checker::check_body(const SceneBody& body, const std::string& path) {
   check_tag(body.tag, path);
   const bool hull = body.desc.shape.kind == ShapeKind::kHull;
   check_mesh_name(body.mesh, path + (hull ? ".shape.hull" : ".shape.mesh"));
+  check_mesh_name(body.visual, path + ".visual");
   for (std::size_t k = 0; k < body.parts.size(); ++k) {
     const ScenePart& part = body.parts[k];
     const std::string part_path = indexed(path + ".shape.parts", k);
@@ -259,6 +260,7 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
     const std::string path = indexed(prefix + "solids", i);
     check_tag(objects.solids[i].tag, path);
     check_mesh_name(objects.solids[i].mesh, path + ".mesh");
+    check_mesh_name(objects.solids[i].visual, path + ".visual");
   }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     check_tag(objects.particles[i].tag, indexed(prefix + "particles", i));

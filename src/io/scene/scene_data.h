@@ -20,6 +20,9 @@ struct SceneModel {
   std::shared_ptr<const Model> model = {};
   std::shared_ptr<const Model> hull = {};  ///< Hull of its points; made when the first body asks for it.
   std::vector<ConnectionPointDesc> connection_points = {};  ///< All given as positions.
+  /// Closed surface for what moves or is filled: `id`, or the mesh made of it; null until it is asked for.
+  MeshId solid = {};
+  double volume = 0;  ///< Volume of `solid` [m^3].
 };
 
 /// SimulationData is what a Simulation owns. scene_build.cpp builds it, scene_simulation.cpp steps it, and
@@ -30,6 +33,8 @@ struct SimulationData {
   Placement placement = {};  ///< Placement of the scene's frame in the world.
   std::unordered_map<std::string, std::size_t> material_of = {};  ///< Maps names to Scene::materials.
   std::unordered_map<std::string, SceneModel> models = {};
+  /// Surfaces of the solids among `models`, by name.
+  std::unordered_map<std::string, MeshDesc> solid_surfaces = {};
   std::vector<SceneObject> objects = {};
   std::unordered_map<std::string, std::size_t> row_of = {};  ///< Maps names to `objects`.
   std::size_t points = 0;                                    ///< Points added so far, for kMostScenePoints.
@@ -40,6 +45,8 @@ struct SimulationData {
   std::uint32_t contacts = 0;  ///< Contacts of the last step.
   std::vector<SceneVerdict> verdicts = {};
   std::vector<Error> errors = {};
+  std::vector<Error> warnings = {};  ///< What was made of meshes unasked.
+  std::vector<Error> notes = {};     ///< What was made of meshes as the scene asks.
 };
 
 namespace io {
@@ -49,6 +56,13 @@ namespace io {
 
 /// Returns the description of the world, with the pairs of materials that have names.
 [[nodiscard]] WorldDesc world_of(const Scene& scene);
+
+/// Whether the scene gives a mesh of this name a `voxel_size`.
+[[nodiscard]] bool is_made_of_voxels(const Scene& scene, const std::string& name);
+
+/// Returns a mesh of the world that is a solid: the mesh of this name, or what it becomes when it is mended
+/// or closed, which is said among the warnings or notes. `where` of an Error is "" or ".voxel_size".
+[[nodiscard]] Result<MeshId> find_solid_mesh(SimulationData& data, const std::string& name);
 
 /// Reads and adds the meshes.
 void build_meshes(SimulationData& data, std::vector<Error>& errors);

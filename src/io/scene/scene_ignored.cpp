@@ -54,7 +54,7 @@ class IgnoredKeys {
 void IgnoredKeys::check(const SceneMesh& mesh) {
   const std::string path = "meshes." + mesh.name;
   ignore(path, {"scale"}, mesh.import.fit.has_value(), "'fit' replaces it");
-  ignore(path, {"up", "scale", "fit"}, mesh.file.empty(), "it is for a file");
+  ignore(path, {"up", "scale", "fit", "origin"}, mesh.file.empty(), "it is for a file");
 }
 
 void IgnoredKeys::check(const WindDesc& wind, const std::string& path) {

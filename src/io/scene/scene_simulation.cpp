@@ -1,6 +1,7 @@
 #include "hooke/scene_io.h"
 
 #include "base/float_environment.h"
+#include "io/scene/parts_cache.h"
 #include "io/scene/scene_check.h"
 #include "io/scene/scene_data.h"
 #include "io/scene/scene_source.h"
@@ -207,7 +208,10 @@ Loaded<std::unique_ptr<SimulationData>> build(Scene scene, const Placement& plac
     return data->timeline[a].at_step < data->timeline[b].at_step;
   });
   evaluate_due(*data);
-  return {.value = std::move(data)};
+  Loaded<std::unique_ptr<SimulationData>> loaded = {.warnings = std::move(data->warnings),
+                                                    .notes = std::move(data->notes)};
+  loaded.value = std::move(data);
+  return loaded;
 }
 
 void note_broken_hooks(SimulationData& data) {
@@ -235,11 +239,15 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement) {
+Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement, const LoadOptions& options) {
   const base::FloatEnvironment environment;
+  io::PartsCache cache(options);
+  const geometry::PartsListening listening(&cache);
   try {
     Loaded<std::unique_ptr<SimulationData>> built = build(std::move(scene), placement);
-    Loaded<Simulation> loaded = {.errors = std::move(built.errors), .warnings = std::move(built.warnings)};
+    Loaded<Simulation> loaded = {.errors = std::move(built.errors),
+                                 .warnings = std::move(built.warnings),
+                                 .notes = std::move(built.notes)};
     if (built) loaded.value = Simulation(std::move(*built.value));
     return loaded;
   } catch (const std::bad_alloc&) {

@@ -268,10 +268,18 @@ const Kind& kind_of<SceneMesh>() {
                                                                   "Length of one unit of the file."),
                  field<&SceneMesh::import, &ImportOptions::fit>(
                      "fit", "m", kPositive, "Replaces `scale`: length of the longest side."),
+                 field<&SceneMesh::import, &ImportOptions::origin>(
+                     "origin", "", kAny,
+                     "Where the origin of its frame is: as in the file; in the center of its box; or in the "
+                     "center of the box's lower face."),
                  field<&SceneMesh::tree>(
                      "tree", "", kAny,
                      "By what rays and points ask it: boxes, or planes too, a BSP tree of a closed mesh, "
                      "which is solid then."),
+                 field<&SceneMesh::voxel_size>(
+                     "voxel_size", "m", kPositive,
+                     "Bodies collide by, and solids fill, a closed surface made of such voxels; an open mesh "
+                     "is closed by 1/64 of its longest side unasked, with a warning."),
                  field<&SceneMesh::mesh, &MeshDesc::positions>("vertices", "m", kAny, "Instead of a file."),
                  field<&SceneMesh::mesh, &MeshDesc::triangles>(
                      "triangles", "", kAny, "Three indices each, counter-clockwise seen from outside."),
@@ -549,6 +557,14 @@ std::span<const EnumName> names_of<lab::CollisionOptions::Sweep>() {
   static constexpr EnumName kNames[] = {{"none", static_cast<int>(Sweep::kNone)},
                                         {"cast", static_cast<int>(Sweep::kCast)},
                                         {"extruded", static_cast<int>(Sweep::kExtruded)}};
+  return kNames;
+}
+
+template <>
+std::span<const EnumName> names_of<ModelOrigin>() {
+  static constexpr EnumName kNames[] = {{"file", static_cast<int>(ModelOrigin::kFile)},
+                                        {"center", static_cast<int>(ModelOrigin::kCenter)},
+                                        {"bottom", static_cast<int>(ModelOrigin::kBottom)}};
   return kNames;
 }
 

@@ -124,6 +124,8 @@ std::span<const EnumName> names_of<WindDesc::Gusts>();
 template <>
 std::span<const EnumName> names_of<MeshTree>();
 template <>
+std::span<const EnumName> names_of<ModelOrigin>();
+template <>
 std::span<const EnumName> names_of<UpAxis>();
 template <>
 std::span<const EnumName> names_of<BodyKind>();

@@ -81,8 +81,8 @@ struct ShapeTables {
             of<ShapeKind::kCylinder>(group("cylinder", cylinder, "A drum.")),
             of<ShapeKind::kCone>(group("cone", cone, "A cone.")),
             of<ShapeKind::kMesh>(field<&Owner::mesh>("mesh", "", kNotEmpty,
-                                                     "Triangles: a name in `meshes`. Of a dynamic body a "
-                                                     "closed surface, which collides by its convex parts.")),
+                                                     "Triangles: a name in `meshes`. A dynamic body "
+                                                     "collides by convex parts of the surface, closed.")),
             of<ShapeKind::kHull>(field<&Owner::mesh>("hull", "", kNotEmpty,
                                                      "The convex hull of a mesh: a name in `meshes`."))};
   }
@@ -116,6 +116,8 @@ std::vector<Field> body_rows() {
   constexpr auto kDesc = &SceneBody::desc;
   return {
       required(group("shape", shape_kind, "What it is.")),
+      field<&SceneBody::visual>("visual", "", kNotEmpty,
+                                "What is drawn in place of the shape: a name in `meshes`."),
       field<kDesc, &BodyDesc::kind>("kind", "", kAny,
                                     "Stands still; moves as told; or moves by what acts on it."),
       field<kDesc, &BodyDesc::position>("position", "m", kAny, "Origin of its frame."),

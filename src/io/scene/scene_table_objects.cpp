@@ -268,10 +268,14 @@ std::vector<Field> solid_rows() {
   return {
       field<kDesc, &SolidDesc::cells>("cells", "", between(1, 256), "Of the box along x, y, z."),
       field<kDesc, &SolidDesc::size>("size", "m", kAny, "Of the box about `position`, each positive."),
-      field<&SceneSolid::mesh>("mesh", "", kNotEmpty,
-                               "Replaces the box: the name in `meshes` of a closed surface that is filled."),
+      field<&SceneSolid::mesh>(
+          "mesh", "", kNotEmpty,
+          "Replaces the box: the name in `meshes` of a surface that is closed and filled."),
+      field<&SceneSolid::visual>("visual", "", kNotEmpty,
+                                 "What is drawn and carried along in place of the mesh or the box: a name in "
+                                 "`meshes`."),
       field<kDesc, &SolidDesc::cell>("cell", "m", kPositive,
-                                     "Size of the cells that fill a mesh; thinner parts are lost."),
+                                     "Size of the cells that fill a mesh; thinner parts become as thick."),
       field<kDesc, &SolidDesc::position>("position", "m", kAny, "Of the box's center or the mesh's frame."),
       field<kDesc, &SolidDesc::rotation>("rotation", "", kAny, "Of the same."),
       field<kDesc, &SolidDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
