@@ -99,6 +99,15 @@ TEST_SUITE("geometry/solid_remesh") {
     CHECK(volume_of(made.mesh) < 1.3 * volume_of(torus));
   }
 
+  TEST_CASE("a mouth that is wound about twice is closed in its plane") {
+    MeshDesc half = open_sphere(0);
+    const auto count = static_cast<std::uint32_t>(half.positions.size());
+    const MeshDesc other = half;
+    for (const Vec3 p : other.positions) half.positions.push_back(Real(0.9) * p);
+    for (const auto& [a, b, c] : other.triangles) half.triangles.push_back({a + count, b + count, c + count});
+    CHECK(volume_of(remeshed(half, 0.05).mesh) == doctest::Approx(2 * test::kPi / 3).epsilon(0.1));
+  }
+
   TEST_CASE("two balls that cross become one surface, and a cavity of a closed mesh stays") {
     MeshDesc balls = test::make_sphere(4);
     const auto count = static_cast<std::uint32_t>(balls.positions.size());

@@ -63,12 +63,11 @@ class RemeshField {
 
   /// Lays the grid; returns false if it would have too many nodes.
   bool lay_grid() {
-    Box3<double> box;
     for (const Triangle& t : mesh_.triangles) {
       const auto [a, b, c] = corners_of(mesh_, t);
-      box = merge(box, geometry::box_of(a, b, c));
+      box_ = merge(box_, geometry::box_of(a, b, c));
     }
-    const DVec3 size = box.upper - box.lower;
+    const DVec3 size = box_.upper - box_.lower;
     double count = 1;
     const double along[3] = {size.x, size.y, size.z};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -78,7 +77,7 @@ class RemeshField {
       grid_.counts[k] = static_cast<int>(nodes);
     }
     const DVec3 room = voxel_ * DVec3{grid_.counts[0] - 1.0, grid_.counts[1] - 1.0, grid_.counts[2] - 1.0};
-    grid_.corner = box.lower - 0.5 * (room - size);
+    grid_.corner = box_.lower - 0.5 * (room - size);
     grid_.spacing = voxel_;
     grid_.value.resize(static_cast<std::size_t>(count));
     return true;
@@ -98,7 +97,10 @@ class RemeshField {
  private:
   /// Distance from the surface, negative inside; far from the surface what the winding number lacks.
   [[nodiscard]] double value_at(DVec3 p) const {
-    const double lack = kInside - std::abs(geometry::winding_number(tree_, p));
+    // Beside a mouth that is wound about twice, as of half a model with walls inside and outside, the number
+    // is large beyond the box, too; the surface must end there.
+    const bool is_beyond = geometry::distance_squared(box_, p) > 0;
+    const double lack = is_beyond ? kInside : kInside - std::abs(geometry::winding_number(tree_, p));
     const auto closest =
         geometry::find_closest(tree_.bvh, vector_cast<Real>(p), static_cast<Real>(kBand * voxel_));
     if (!closest) return std::clamp(2 * lack, -1.0, 1.0) * kBand * voxel_;
@@ -141,6 +143,7 @@ class RemeshField {
   const MeshDesc& mesh_;
   geometry::WindingTree tree_;
   double voxel_;
+  Box3<double> box_ = {};
   NodeGrid grid_;
 };
 

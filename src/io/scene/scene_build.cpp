@@ -380,13 +380,15 @@ void Builder::note_additions(const SolidDesc& desc, const std::string& mesh, con
   const auto additions = geometry::measure_additions(data_.solid_surfaces[mesh], cell);
   if (!additions || additions.value().thin + additions.value().bridges == 0) return;
   const geometry::CellAdditions& added = additions.value();
-  std::string text = "is thinner than its cells in places: " + std::to_string(added.thin) +
-                     " cells were added along thin parts, which are as thick as a cell now";
-  if (added.thin == 0) text = "has parts that do not hold together in its cells";
-  text += ", and " + std::to_string(added.bridges) + " to join " + std::to_string(added.pieces) +
-          " pieces; a smaller 'cell' needs fewer";
-  data_.notes.push_back(
-      error_at(data_.scene.source.get(), path + ".cell", ErrorCode::kOutOfRange, std::move(text)));
+  const std::string joined =
+      std::to_string(added.bridges) + " to join " + std::to_string(added.pieces) + " pieces";
+  const std::string text =
+      added.thin > 0
+          ? "is thinner than its cells in places: " + std::to_string(added.thin) +
+                " cells were added along thin parts, which are as thick as a cell now, and " + joined
+          : "has parts that do not hold together in its cells: cells were added, " + joined;
+  data_.notes.push_back(error_at(data_.scene.source.get(), path + ".cell", ErrorCode::kOutOfRange,
+                                 text + "; a smaller 'cell' needs fewer"));
 }
 
 void Builder::build(const SceneSolid& solid, const std::string& path) {
