@@ -90,6 +90,8 @@ class RemeshField {
           grid_.value[grid_.index(x, y, z)] = value_at(grid_.place(x, y, z));
       }
     }
+    wound_.reserve(grid_.value.size());
+    for (const double value : grid_.value) wound_.push_back(value < 0 ? 1 : 0);
     for (const Triangle& t : mesh_.triangles) thicken(corners_of(mesh_, t));
     return grid_;
   }
@@ -109,8 +111,16 @@ class RemeshField {
     return lack > 0 ? distance : -distance;
   }
 
-  [[nodiscard]] bool is_inside(DVec3 p) const {
-    return std::abs(geometry::winding_number(tree_, p)) >= kInside;
+  /// Whether the node nearest to the point is inside by the winding number. It costs nothing, where the
+  /// number itself at each sample took nine tenths of the time.
+  [[nodiscard]] bool is_near_inside(DVec3 p) const {
+    const DVec3 at = 1 / voxel_ * (p - grid_.corner);
+    const auto nearest = [](double x) { return static_cast<int>(std::floor(x + 0.5)); };
+    return wound_[grid_.index(nearest(at.x), nearest(at.y), nearest(at.z))] != 0;
+  }
+
+  [[nodiscard]] bool has_inside(DVec3 p, DVec3 step) const {
+    return is_near_inside(p + step) || is_near_inside(p + 0.5 * step);
   }
 
   /// Gives thickness to those parts of a triangle that have no inside within a voxel of either of its sides.
@@ -120,7 +130,7 @@ class RemeshField {
     if (!(twice_area > 0)) return;
     const DVec3 step = voxel_ / twice_area * across;
     sample(t, voxel_, [&](DVec3 p) {
-      if (!is_inside(p - step) && !is_inside(p + step)) stamp(t, p);
+      if (!has_inside(p, -step) && !has_inside(p, step)) stamp(t, p);
     });
   }
 
@@ -144,6 +154,7 @@ class RemeshField {
   geometry::WindingTree tree_;
   double voxel_;
   Box3<double> box_ = {};
+  std::vector<std::uint8_t> wound_;  // For each node, whether it is inside by the winding number alone.
   NodeGrid grid_;
 };
 
