@@ -134,9 +134,10 @@ class CellJoiner {
     take(cells[std::max_element(piece_sizes_.begin(), piece_sizes_.end()) - piece_sizes_.begin()]);
     std::uint32_t count = 0;
     while (!waiting.empty()) {
-      const auto [so_far, i] = waiting.top();
+      const Offer nearest = waiting.top();
+      const std::size_t i = nearest.second;
       waiting.pop();
-      if (so_far != cost[i]) continue;
+      if (nearest.first != cost[i]) continue;
       if (piece_of_[i] != kNone && !cells[piece_of_[i]].empty()) {
         for (std::size_t k = came_from[i]; cost[k] != 0; k = came_from[k]) {
           count += grid_.filled[k] == 0 ? 1 : 0;
