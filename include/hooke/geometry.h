@@ -49,7 +49,7 @@ struct SolidRemesh {
 /// disagree, or a mere soup of triangles. It is made anew from voxels, by generalized winding numbers and a
 /// surface net.
 ///
-/// - What the mesh winds about at least half a time is inside, so that a hole is closed as by a soap film.
+/// - What the mesh winds about more than half a time is inside, so that a hole is closed as by a soap film.
 ///   Triangles that face the wrong way take from this, and enough of them open the mesh again.
 /// - Where the mesh is thinner than a voxel, as a sheet without a back is, it gets a thickness of 1.7 voxels.
 /// - Holes inside that nothing from outside reaches are filled, unless the given mesh is closed.

@@ -14,7 +14,7 @@
 
 /// \file
 /// Makes a closed surface around any triangles. A node of a grid is inside where the surface winds about it
-/// at least half a time, which closes holes as a soap film does, or where it is near a part of the surface
+/// more than half a time, which closes holes as a soap film does, or where it is near a part of the surface
 /// that is too thin for the grid. The surface net of the nodes is the new surface.
 
 namespace hooke {
@@ -28,7 +28,7 @@ using geometry::Triangle;
 constexpr double kNodesMax = 1 << 24;
 constexpr int kMargin = 3;           // Nodes around the mesh that remain outside.
 constexpr double kBand = 1.5;        // Distances beyond so many voxels are not measured.
-constexpr double kInside = 0.5;      // Least winding number inside.
+constexpr double kInside = 0.51;     // Least winding number inside: both sides of a lone sheet have a half.
 constexpr double kThinReach = 0.87;  // Half the diagonal of a voxel: no sheet so thick slips between nodes.
 constexpr double kFilled = 0.25;     // Depth of nodes that are filled for their neighbors' sake [voxels].
 constexpr double kEnclosed = 1;      // Surface that lies deeper than so many voxels is an inner one.
