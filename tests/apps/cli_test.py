@@ -273,23 +273,18 @@ class Warnings(Program):
         out, err = self.hooke("run", self.scene({"version": 1, "seconds": 0.5} | content), "--json", "-", *words)
         report = json.loads(out)
         lines = [f"warning: {line}" for line in report["warnings"]]
-        self.assertEqual(err.splitlines(), lines)
+        self.assertEqual([line for line in err.splitlines() if not line.startswith("note: ")], lines)
         self.assertEqual(len(report["warnings"]), len(report["problems"]))
         for one, line in zip(report["problems"], lines):
             self.assertIn(one["what"], line)
             self.assertTrue(line.endswith(one["cure"]) and one["cure"], line)
         return {one["object"]: one for one in report["problems"]}
 
-    def test_jelly_that_the_substeps_cannot_carry(self):
-        jelly = {"name": "jelly", "cells": [4, 4, 4], "size": [1, 1, 1], "density": 1000, "young_modulus": 1e7,
-                 "poisson_ratio": 0.25, "position": [0, 5, 0]}
-        told = self.problems({"solids": [jelly]})["jelly"]
-        # A wave goes one cell of 0.25 m in four substeps of 1/480 s: mu = rho 30^2, E = 2.5 mu.
-        self.assertAlmostEqual(told["worst"] / (2.5 * 1000 * 30**2), 1, delta=1e-5)
-        self.assertEqual((told["limit"], told["unit"]), (1e7, "Pa"))
-        wanted = int(re.match(r"particle_substeps (\d+), or larger cells", told["cure"])[1])
-        self.assertEqual(self.problems({"solids": [jelly]}, "--particle-substeps", wanted), {})
-        self.assertEqual(self.problems({"solids": [jelly | {"young_modulus": 1e5}]}), {})
+    def test_jelly_as_stiff_as_the_substeps_carry_and_stiffer(self):
+        jelly = {"name": "jelly", "cells": [4, 4, 4], "size": [1, 1, 1], "density": 1000, "poisson_ratio": 0.25,
+                 "position": [0, 5, 0]}
+        for young_modulus in (1e5, 1e7, 1e9):
+            self.assertEqual(self.problems({"solids": [jelly | {"young_modulus": young_modulus}]}), {})
 
     def test_cloth_that_loses_its_bending(self):
         # A strip of 10 cells held at one edge.
@@ -328,9 +323,10 @@ class Warnings(Program):
         triangles = [[i + 8 * k for i in face] for k in range(len(boxes)) for face in faces]
         scene = {"meshes": {"parts": {"vertices": vertices, "triangles": triangles}},
                  "solids": [{"name": "parts", "mesh": "parts", "cell": 0.15}], "world": {"gravity": [0, 0, 0]}}
-        told = self.problems(scene).get("parts")
-        self.assertRegex(told["what"], r"fills \d+(\.\d+)? % of its mesh")
-        self.assertLess(told["worst"], 0.95)
+        # Cells are added along thin parts, and said; nothing is lost then.
+        self.assertEqual(self.problems(scene), {})
+        path = self.scene({"version": 1, "seconds": 0.1} | scene)
+        self.assertRegex(self.hooke("run", path)[1], r"thinner than its cells in places: \d+ cells were added")
 
     def test_limits_that_do_not_hold(self):
         rope = {"name": "rope", "masses": 8, "stiffness": 100, "extension_max": 0.05, "hook_point": [0, 3, 0],
@@ -495,7 +491,7 @@ class Convert(Program):
         self.assert_one_line(self.hooke("convert", "bad.3ds", "x.obj", code=2)[1], r"^bad\.3ds: ")
         self.assert_one_line(self.hooke("convert", "none.obj", "x.obj", code=2)[1], r"^none\.obj: ")
         done = self.hooke("convert", "scenes/models/crate.3ds", "none/x.obj", code=3)
-        self.assertIn("none/x.", done[1])
+        self.assertRegex(done[1], r"^none/\S+: cannot be written")
         self.assertEqual(self.files(), ["bad.3ds"])
 
     def test_a_kind_of_model_that_is_not_known_is_bad_input(self):

@@ -22,11 +22,13 @@ inline constexpr const char* kLively =
     "a light body with restitution that a heavy one presses on a mesh turns within a step";
 inline constexpr const char* kCloth = "a cloth that a body falls on stretches too far, or its hooks open";
 
+inline constexpr const char* kLinks = "3 t that come to rest on links of a chain press them into the ground";
+
 inline constexpr KnownRoom kKnownRooms[] = {
     {2, test::Figure::kOverlap, 0.34, kThin},          {5, test::Figure::kEnergy, 0.0187, kCloth},
     {10, test::Figure::kOverlap, 0.662, kThin},        {18, test::Figure::kEnergy, 0.0334, kLively},
     {18, test::Figure::kRestOverlap, 0.2517, kLively}, {27, test::Figure::kEnergy, 0.0227, kCloth},
-    {28, test::Figure::kGap, 0.4197, kCloth},
+    {28, test::Figure::kGap, 0.4197, kCloth},          {33, test::Figure::kRestOverlap, 0.067, kLinks},
 };
 
 }  // namespace hooke::fuzz

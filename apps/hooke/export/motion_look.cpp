@@ -52,10 +52,10 @@ std::vector<std::byte> png_of(const render::Image& image) {
 
 }  // namespace
 
-std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path) {
-  const auto [entry, is_new] = images_.try_emplace(path);
+std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path, const ImageBytes& bytes) {
+  const auto [entry, is_new] = images_.try_emplace({path, bytes});
   if (!is_new) return entry->second;
-  auto image = render::load_image(path);
+  auto image = bytes ? render::decode_image(*bytes, path) : render::load_image(path);
   if (!image) {
     warnings_.push_back(to_line(image.error()));
     return nullptr;
@@ -63,7 +63,7 @@ std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path) 
   entry->second = std::make_shared<const render::Image>(std::move(image).value());
   auto file = std::make_shared<MotionImage>();
   file->name = fs::path(path).filename().string();
-  file->bytes = read_bytes(path);
+  file->bytes = bytes ? *bytes : read_bytes(path);
   if (!is_portable(file->bytes)) {
     file->name = fs::path(path).stem().string() + ".png";
     file->bytes = png_of(*entry->second);

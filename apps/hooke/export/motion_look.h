@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace hooke::app {
@@ -17,8 +18,9 @@ namespace hooke::app {
 /// MotionLooks gives the materials of a recording: equal ones once, with the files of their images.
 class MotionLooks {
  public:
-  /// Returns the image at a path as the renderer sees it, or null with a warning.
-  std::shared_ptr<const render::Image> load(const std::string& path);
+  /// Returns the image of the bytes, or at the path if there are none, as the renderer sees it, or null with
+  /// a warning. Equal paths and bytes are one image.
+  std::shared_ptr<const render::Image> load(const std::string& path, const ImageBytes& bytes);
 
   /// Returns the number in `motion` of a material that looks like the finish. `name` is that of the scene;
   /// empty for none.
@@ -30,7 +32,7 @@ class MotionLooks {
  private:
   using Key = std::tuple<std::string, float, float, float, float, float, const render::Image*, bool>;
 
-  std::map<std::string, std::shared_ptr<const render::Image>> images_;
+  std::map<std::pair<std::string, ImageBytes>, std::shared_ptr<const render::Image>> images_;
   std::map<const render::Image*, std::shared_ptr<const MotionImage>> files_;
   std::map<Key, std::uint32_t> numbers_;
   std::vector<std::string> warnings_;

@@ -158,8 +158,10 @@ Result<void> MotionRecorder::record(const Simulation& simulation, double time) {
 Result<MotionRecorder::Entry*> MotionRecorder::find_entry(const Simulation& simulation,
                                                           const SceneObject& object, const Taken& now) {
   if (const auto known = entries_.find(now.key); known != entries_.end()) return &known->second;
-  const Figure figure = make_figure(
-      simulation, object, [this](const std::string& path) { return looks_.load(path); }, geometries_);
+  const auto load = [this](const std::string& path, const ImageBytes& bytes) {
+    return looks_.load(path, bytes);
+  };
+  const Figure figure = make_figure(simulation, object, load, geometries_);
   if (object.kind == Kind::kBody) {
     const auto added = add_body(simulation, object, figure);
     if (!added) return added.error();

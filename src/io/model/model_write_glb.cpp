@@ -153,7 +153,8 @@ Bytes write_glb(const Model& model) {
   Json document = {{"asset", {{"version", "2.0"}, {"generator", "Hooke"}}},
                    {"scene", 0},
                    {"scenes", {{{"nodes", {0}}}}},
-                   {"nodes", {{{"mesh", 0}}}}};
+                   {"nodes", {{{"mesh", 0}}}},
+                   {"buffers", Json::array()}};  // its place; the images decide its length
   HeldImages held;
   put_geometry(document, model, vertex_bytes, index_bytes);
   put_materials(document, model, vertex_bytes + index_bytes, held);
