@@ -95,6 +95,10 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
   return {};
 }
 
+void add_lines(const std::vector<Error>& errors, std::vector<std::string>& lines) {
+  for (const Error& error : errors) lines.push_back(to_line(error));
+}
+
 /// Opens the file of the report, if one is asked for.
 Result<std::optional<OutputFile>> open_report(const RunOptions& options) {
   if (options.json.empty()) return std::optional<OutputFile>();
@@ -156,9 +160,9 @@ int command_run(Arguments arguments) {
       options.turned == 0 ? Placement{} : random_placement(options.turned, scene.world.gravity);
   Loaded<Simulation> built = Simulation::create(std::move(scene), placement, load_options());
   if (!built) return report(built.errors, built.warnings);
-  for (const Error& warning : loaded.warnings) record.warnings.push_back(to_line(warning));
-  for (const Error& warning : built.warnings) record.warnings.push_back(to_line(warning));
-  for (const Error& note : built.notes) record.notes.push_back(to_line(note));
+  add_lines(loaded.warnings, record.warnings);
+  add_lines(built.warnings, record.warnings);
+  add_lines(built.notes, record.notes);
 
   Simulation& simulation = *built.value;
   const auto done = simulate(simulation, options, steps, record);

@@ -39,6 +39,8 @@ class Builder {
   MeshId mesh_of(ShapeKind kind, const std::string& name, bool moves);
   /// Returns the closed surface of a mesh. If there is none it says why, and returns null.
   MeshId solid_mesh_of(const std::string& name);
+  /// Pins points of a solid that was made. Returns whether there was room for them.
+  bool pin_points(const SceneSolid& solid, SolidId id, const std::string& path);
   /// Says what was added to the cells of a solid so that it is one piece.
   void note_additions(const SolidDesc& desc, const std::string& mesh, const std::string& path);
   /// Adds the connection points of an object. Those of a mesh that it is made of are placed in its frame,
@@ -419,17 +421,21 @@ void Builder::build(const SceneSolid& solid, const std::string& path) {
     if (!solid.visual.empty()) object.visual = model;
     const Result<SolidId> added = data_.world.add_solid(placed(desc, data_.placement));
     if (!keep(object, &SceneObject::solid, added)) return;
-    // The points of a solid made of a mesh are known only now.
-    std::vector<DVec3> points(data_.world.positions(added.value()).size());
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      points[k] = data_.placement.own_point(data_.world.positions(added.value())[k]);
-    }
-    if (!reserve(points.size(), path)) return;
-    for (const PinDesc& pin : pins_of(solid.pins, points, 0, path)) {
-      const MotionDesc motion = placed(pin.motion, data_.placement);
-      (void)data_.world.pin(point(added.value(), pin.point), motion);  // The motion was checked before.
-    }
+    if (!pin_points(solid, added.value(), path)) return;
   }
+}
+
+bool Builder::pin_points(const SceneSolid& solid, SolidId id, const std::string& path) {
+  // The points of a solid made of a mesh are known only now.
+  std::vector<DVec3> points(data_.world.positions(id).size());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    points[k] = data_.placement.own_point(data_.world.positions(id)[k]);
+  if (!reserve(points.size(), path)) return false;
+  for (const PinDesc& pin : pins_of(solid.pins, points, 0, path)) {
+    const MotionDesc motion = placed(pin.motion, data_.placement);
+    (void)data_.world.pin(point(id, pin.point), motion);  // The motion was checked before.
+  }
+  return true;
 }
 
 void Builder::build(const SceneParticles& particles, const std::string& path) {

@@ -92,9 +92,10 @@ DVec3 released_change(Vec3 v, Real h, const PressedPoint& point, state::Tables& 
     const DVec3 given = (size > most ? most / size : 1) * across;
     change += given;
     contacts.normal_force[row] = static_cast<Real>(std::max(stopped, 0.0)) / (h * point.inverse_mass);
-    if (size > most && gives_way(t.bodies, contacts.body[row]))
-      push_body(contacts.body[row], vector_cast<Real>((1 / w) * (across - given)), contacts.lever[row],
-                t.bodies);
+    if (size > most && gives_way(t.bodies, contacts.body[row])) {
+      const Vec3 rest_of_friction = vector_cast<Real>((1 / w) * (across - given));
+      push_body(contacts.body[row], rest_of_friction, contacts.lever[row], t.bodies);
+    }
   });
   return change;
 }

@@ -84,10 +84,10 @@ void begin_stiff_solution(TetrahedronBlocks& tetrahedra) {
 void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
   StiffSolution& stiff = tetrahedra.stiff;
   take_masses(tetrahedra, particles);
-  for (std::size_t i = 0; i < stiff.mass.size(); ++i)
-    set(at(stiff.force, i) + friction_on(tetrahedra, i) - at(stiff.image, i) -
-            stiff.mass[i] * own_change(tetrahedra, i),
-        i, stiff.residual);
+  for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
+    const DVec3 given = at(stiff.force, i) + friction_on(tetrahedra, i) - at(stiff.image, i);
+    set(given - stiff.mass[i] * own_change(tetrahedra, i), i, stiff.residual);
+  }
   stiff.size = precondition(stiff);
   if (!(stiff.first_size > 0)) stiff.first_size = stiff.size;
   stiff.direction = stiff.image;
