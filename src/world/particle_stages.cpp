@@ -95,11 +95,12 @@ void solve_passes(Rows& rows, Division division, int grain, state::Particles& pa
   }
 }
 
-/// Whether flow has made a tetrahedron stiff since coefficients were prepared.
-bool has_become_stiff(const solver::SoftGroup& group) {
-  return std::any_of(
-      group.yields.tetrahedra.begin(), group.yields.tetrahedra.end(),
-      [&](const solver::TetrahedronYield& yield) { return group.tetrahedra.is_stiff(yield.lane); });
+/// Whether a tetrahedron was stiff when coefficients were prepared, or flow has made one stiff since.
+bool is_stiff(const solver::SoftGroup& group) {
+  return group.tetrahedra.any_stiff ||
+         std::any_of(
+             group.yields.tetrahedra.begin(), group.yields.tetrahedra.end(),
+             [&](const solver::TetrahedronYield& yield) { return group.tetrahedra.is_stiff(yield.lane); });
 }
 
 /// Solves the rows of a group at once, with the masses that press on its points. What does not stay where it
@@ -326,11 +327,12 @@ void rebase_origins(WorldData& world) {
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   std::vector<int>& pressing = world.frame.pressing_points;
-  solver::count_pressing_points(tables, h, pressing);
+  const std::vector<solver::SoftGroup>& groups = world.derived.soft.groups;
+  if (std::any_of(groups.begin(), groups.end(), is_stiff)) solver::count_pressing_points(tables, h, pressing);
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
     solver::TetrahedronBlocks& tetrahedra = group.tetrahedra;
     if (tetrahedra.blocks.empty()) return;
-    if (tetrahedra.any_stiff || has_become_stiff(group)) {
+    if (is_stiff(group)) {
       solve_stiff_solids(tables, pressing, h, division, tetrahedra);
     } else {
       solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);

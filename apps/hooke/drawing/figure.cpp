@@ -292,6 +292,15 @@ void add_particles(const Figure& figure, const FigurePlace& place, render::DrawL
 
 }  // namespace
 
+ObjectKey key_of(const SceneObject& object) {
+  // The ids of other kinds are null.
+  return {object.kind,
+          object.body.slot + object.rope.slot + object.cloth.slot + object.solid.slot +
+              object.particles.slot + object.hook.slot,
+          object.body.generation + object.rope.generation + object.cloth.generation +
+              object.solid.generation + object.particles.generation + object.hook.generation};
+}
+
 Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
                    BodyGeometries& geometries) {
   Figure figure;

@@ -6,11 +6,13 @@
 
 #include "render/draw_list.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace hooke::app {
@@ -62,6 +64,10 @@ struct Figure {
 /// Returns the image of a path, or of the bytes if there are any, or null.
 using TextureLoader =
     std::function<std::shared_ptr<const render::Image>(const std::string& path, const ImageBytes& bytes)>;
+
+/// Tells objects of a simulation apart: its kind, and the slot and generation of its id.
+using ObjectKey = std::tuple<SceneObject::Kind, std::uint32_t, std::uint32_t>;
+ObjectKey key_of(const SceneObject& object);
 
 /// Prepares everything about an object of a simulation that does not change.
 Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,

@@ -51,13 +51,7 @@ std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::strin
 }
 
 std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, const SceneObject& object) {
-  // The ids of other kinds are null.
-  const std::uint32_t slot = object.body.slot + object.rope.slot + object.cloth.slot + object.solid.slot +
-                             object.particles.slot + object.hook.slot;
-  const std::uint32_t generation = object.body.generation + object.rope.generation + object.cloth.generation +
-                                   object.solid.generation + object.particles.generation +
-                                   object.hook.generation;
-  std::shared_ptr<Figure>& figure = figures_[{object.kind, slot, generation}];
+  std::shared_ptr<Figure>& figure = figures_[key_of(object)];
   if (figure == nullptr) {
     figure = std::make_shared<Figure>(make_figure(
         simulation, object,

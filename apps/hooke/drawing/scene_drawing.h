@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hooke/drawing/body_geometry.h"
+#include "hooke/drawing/figure.h"
 #include "hooke/drawing/scene_camera.h"
 #include "hooke/geometry.h"
 #include "hooke/scene_io.h"
@@ -11,13 +11,11 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace hooke::app {
 
-struct Figure;       // Look and triangles of one object; see figure.h.
 struct FigurePlace;  // Where an object is; see figure.h.
 
 struct DrawingStyle {
@@ -62,7 +60,6 @@ class SceneDrawing {
     double time = 0;
     std::vector<ObjectState> objects;
   };
-  using Key = std::tuple<SceneObject::Kind, std::uint32_t, std::uint32_t>;
 
   std::shared_ptr<Figure> find_figure(const Simulation& simulation, const SceneObject& object);
   std::shared_ptr<const render::Image> find_texture(const std::string& path, const ImageBytes& bytes);
@@ -75,7 +72,7 @@ class SceneDrawing {
   void add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const;
 
   BodyGeometries geometries_;
-  std::map<Key, std::shared_ptr<Figure>> figures_;
+  std::map<ObjectKey, std::shared_ptr<Figure>> figures_;
   /// By path, or by the bytes of an image that a model holds.
   std::map<std::pair<std::string, ImageBytes>, std::shared_ptr<const render::Image>> textures_;
   std::vector<std::string> warnings_;

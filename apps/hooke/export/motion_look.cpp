@@ -1,7 +1,8 @@
 #include "hooke/export/motion_look.h"
 
+#include "render/batches.h"
+
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -15,10 +16,6 @@ namespace hooke::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-float linear_of(float srgb) {
-  return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
-}
 
 std::vector<std::byte> read_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -84,7 +81,7 @@ std::uint32_t MotionLooks::find(MotionRecording& motion, const Finish& finish, c
   if (!is_new) return entry->second;
   MotionMaterial material;
   material.name = name.empty() ? "look" : name;
-  material.color = {linear_of(c.r), linear_of(c.g), linear_of(c.b)};
+  material.color = render::linear_of(c);
   material.opacity = finish.opacity;
   material.shininess = finish.shininess;
   material.two_sided = two_sided;

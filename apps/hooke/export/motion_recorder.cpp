@@ -79,12 +79,7 @@ bool MotionRecorder::is_recorded(const SceneObject& object) const {
 
 MotionRecorder::Taken MotionRecorder::taken(const World& world, const SceneObject& object) const {
   Taken now;
-  // The ids of other kinds are null.
-  now.key = {object.kind,
-             object.body.slot + object.rope.slot + object.cloth.slot + object.solid.slot +
-                 object.particles.slot + object.hook.slot,
-             object.body.generation + object.rope.generation + object.cloth.generation +
-                 object.solid.generation + object.particles.generation + object.hook.generation};
+  now.key = key_of(object);
   if (object.kind == Kind::kBody) {
     const Pose pose = world.pose(object.body);
     now.state = {.position = pose.position,

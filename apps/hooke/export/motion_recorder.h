@@ -42,7 +42,6 @@ class MotionRecorder {
   [[nodiscard]] bool has_objects() const { return !entries_.empty(); }
 
  private:
-  using Key = std::tuple<SceneObject::Kind, std::uint32_t, std::uint32_t>;
   /// An Entry is an object of the recording.
   struct Entry {
     std::uint32_t object = 0;
@@ -50,7 +49,7 @@ class MotionRecorder {
   };
   /// A Taken is the state of an object after a step.
   struct Taken {
-    Key key = {};
+    ObjectKey key = {};
     MotionState state = {};
     std::vector<DVec3> points = {};
   };
@@ -74,7 +73,7 @@ class MotionRecorder {
   Detail detail_;
   MotionLooks looks_;
   BodyGeometries geometries_;
-  std::map<Key, Entry> entries_;
+  std::map<ObjectKey, Entry> entries_;
   std::map<std::string, std::uint32_t> bodies_;  ///< Bodies of the first frame by their names.
   /// Meshes of bodies by what they are made of.
   std::map<std::tuple<const void*, float, float, float, std::vector<std::uint32_t>>, std::uint32_t> meshes_;

@@ -63,6 +63,10 @@ struct ObjText {
 /// Writes the binary form with z up. It has no place for materials, texture coordinates and smooth normals.
 [[nodiscard]] Bytes write_stl(const Model& model);
 
+/// Returns the roughness whose highlight has this Blinn-Phong exponent: exponent = 2 / roughness^4 - 2
+/// (Karis, 2013).
+[[nodiscard]] float roughness_of(float shininess);
+
 /// Whether glTF can hold the image: a PNG or a JPEG, by its first bytes.
 [[nodiscard]] bool is_gltf_image(const std::vector<std::byte>& bytes);
 

@@ -43,12 +43,6 @@ struct HeldImages {
   std::size_t size = 0;            // [bytes], each filled up to a multiple of four
 };
 
-/// Returns the roughness whose highlight has this Blinn-Phong exponent: exponent = 2 / roughness^4 - 2
-/// (Karis, 2013).
-float roughness_of(float shininess) {
-  return std::pow(2.0f / (shininess + 2.0f), 0.25f);
-}
-
 /// Adds an image: a view of the bytes appended to `held`, each once, or a name beside the file.
 Json image_entry(Json& document, const ModelMaterial& material, std::size_t base, HeldImages& held) {
   if (!material.image || !is_gltf_image(*material.image)) {
@@ -139,6 +133,10 @@ void put_geometry(Json& document, const Model& model, std::size_t vertex_bytes, 
 }
 
 }  // namespace
+
+float roughness_of(float shininess) {
+  return std::pow(2.0f / (shininess + 2.0f), 0.25f);
+}
 
 bool is_gltf_image(const std::vector<std::byte>& bytes) {
   const auto byte = [&](std::size_t i) { return std::to_integer<int>(bytes[i]); };

@@ -116,10 +116,6 @@ bool has_uvs(const MotionMesh& mesh) {
                      [](const ModelVertex& vertex) { return vertex.uv != std::array<float, 2>{}; });
 }
 
-float roughness_of(float shininess) {
-  return std::pow(2.0f / (shininess + 2.0f), 0.25f);
-}
-
 std::string length_text(double meters) {
   std::array<char, 40> text = {};
   const bool is_small = meters < 0.1;

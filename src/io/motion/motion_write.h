@@ -79,10 +79,6 @@ struct MotionJob {
 /// Tells whether a mesh has texture coordinates other than zero.
 [[nodiscard]] bool has_uvs(const MotionMesh& mesh);
 
-/// Returns the roughness whose highlight has this Blinn-Phong exponent: exponent = 2 / roughness^4 - 2
-/// (Karis, 2013).
-[[nodiscard]] float roughness_of(float shininess);
-
 /// Writes a length with a unit that suits it, such as "0.1 mm".
 [[nodiscard]] std::string length_text(double meters);
 

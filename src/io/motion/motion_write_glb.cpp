@@ -1,3 +1,4 @@
+#include "io/model/model_write.h"
 #include "io/motion/motion_glb_document.h"
 #include "io/motion/motion_names.h"
 #include "io/motion/motion_reduce.h"

@@ -102,11 +102,11 @@ DVec3 released_change(Vec3 v, Real h, const PressedPoint& point, state::Tables& 
 
 /// Lets go what does not hold a point, and takes hold where it would pass. Bodies do not pull, and friction
 /// has a limit. What was let go is not held again in the same substep, so that points do not flicker.
-void revise(const state::Tables& t, Real h, DVec3 change, PressedPoint& point) {
+void revise(const state::Tables& t, Real h, PressedPoint& point) {
   const state::Contacts& contacts = t.contacts;
   const Vec3 before = t.particles.velocity[point.particle].v;
   const Vec3 free = before + vector_cast<Real>(static_cast<double>(point.inverse_mass) * point.impulse);
-  const Vec3 now = before + vector_cast<Real>(change);
+  const Vec3 now = before + vector_cast<Real>(point.change);
   point.friction = {};
   for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
     if ((point.held & bit) == 0) {
@@ -193,7 +193,7 @@ bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& t
     const std::uint32_t held = point.held;
     const std::uint32_t stuck = point.stuck;
     const DVec3 friction = point.friction;
-    revise(t, h, point.change, point);
+    revise(t, h, point);
     const bool slides_alike = length(point.friction - friction) <= kFrictionError * length(point.friction);
     if (slides_alike && point.held == held && (point.stuck & point.held) == (stuck & point.held)) continue;
     point.is_new_hold = (point.held & ~held) != 0;

@@ -9,7 +9,8 @@
 
 namespace hooke::solver {
 
-/// Counts the points of deformables that press on each body, by row of the body.
+/// Counts the points of deformables that press on each body, or are about to in a substep of `h` [s], by row
+/// of the body.
 void count_pressing_points(const state::Tables& tables, Real h, std::vector<int>& shares);
 
 /// Notes the points of solids that bodies press on, and how hard they are to move with a share of the body's
@@ -24,9 +25,9 @@ void note_pressed_points(const state::Tables& tables, const std::vector<int>& sh
 [[nodiscard]] bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& tables, Real h,
                                         TetrahedronBlocks& tetrahedra);
 
-/// Gives each point that was noted the velocity that its impulses alone cause, and forgets it. Contacts then
-/// share these impulses out. Overlaps count as at most what stress lets leave at once: a move of one point
-/// strains what is stiff. It changes bodies: call it for one group after the other.
+/// Gives each point that was noted the velocity that its impulses alone cause where contacts hold it, which
+/// then share these impulses out. Overlaps count as at most what stress lets leave at once: a move of one
+/// point strains what is stiff. It changes bodies: call it for one group after the other.
 void release_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& tables);
 
 /// Gives points that a body holds the velocity of its surface, and forgets them: contacts yield a little to

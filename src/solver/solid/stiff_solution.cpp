@@ -136,7 +136,7 @@ void find_pressed_impulses(TetrahedronBlocks& tetrahedra) {
   }
 }
 
-void look_back(TetrahedronBlocks& tetrahedra) {
+bool look_back(TetrahedronBlocks& tetrahedra) {
   StiffSolution& stiff = tetrahedra.stiff;
   for (PressedPoint& point : tetrahedra.pressed) {
     if (point.is_new_hold) set(point.start, point.particle - tetrahedra.first_particle, stiff.change);
@@ -144,6 +144,7 @@ void look_back(TetrahedronBlocks& tetrahedra) {
   }
   stiff.direction = stiff.change;
   std::fill(stiff.image.begin(), stiff.image.end(), 0.0);
+  return std::any_of(stiff.change.begin(), stiff.change.end(), [](double v) { return v != 0; });
 }
 
 void finish_stiff_solution(TetrahedronBlocks& tetrahedra, state::Particles& particles) {

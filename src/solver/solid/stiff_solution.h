@@ -23,8 +23,8 @@ namespace hooke::solver {
 void begin_stiff_solution(TetrahedronBlocks& tetrahedra);
 
 /// Begins with the change so far, and with `start` for points that a contact has taken hold of. It becomes
-/// the direction.
-void look_back(TetrahedronBlocks& tetrahedra);
+/// the direction. Returns whether it is other than zero, so that rows resist it.
+[[nodiscard]] bool look_back(TetrahedronBlocks& tetrahedra);
 
 /// Takes W of each particle, and finds the residual and the first direction. `image` is how rows resist the
 /// change so far.
@@ -39,8 +39,7 @@ void advance(TetrahedronBlocks& tetrahedra);
 /// Finds the change for the present W. `pass` calls a function with all blocks of rows, color after color.
 template <class Pass>
 void solve_for_change(TetrahedronBlocks& tetrahedra, const state::Particles& particles, const Pass& pass) {
-  look_back(tetrahedra);
-  pass(resist_tetrahedra);
+  if (look_back(tetrahedra)) pass(resist_tetrahedra);
   aim(tetrahedra, particles);
   while (needs_direction(tetrahedra)) {
     pass(resist_tetrahedra);

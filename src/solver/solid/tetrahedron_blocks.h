@@ -115,7 +115,7 @@ struct TetrahedronBlocks {
   Real inverse_h = Real(0);     ///< 1 / h [1/s]; written by prepare_tetrahedra.
   bool any_damping = false;     ///< Whether any row is damped.
   bool any_stiff = false;  ///< Whether any row was stiff when they were prepared; it may become so by flow.
-  std::vector<PressedPoint> pressed;  ///< In the order of particles. Lives while solids are solved.
+  std::vector<PressedPoint> pressed;  ///< In the order of particles. Lives until contacts are solved.
   /// 1 + the row in `pressed` of each particle, from the first one on; 0 for those that nothing presses on.
   std::vector<std::uint32_t> pressed_of;
   StiffSolution stiff;  ///< Empty until a row is stiff.

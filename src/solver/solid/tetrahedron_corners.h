@@ -35,15 +35,6 @@ template <class Number>
 HWY_INLINE Matrix<Number> scaled(Number s, const Matrix<Number>& m) {
   return {scaled(s, m.x), scaled(s, m.y), scaled(s, m.z)};
 }
-template <class Condition, class Number>
-HWY_INLINE Matrix<Number> choose(const Condition& condition, const Matrix<Number>& yes,
-                                 const Matrix<Number>& no) {
-  const auto column = [&](const Triple<Number>& a, const Triple<Number>& b) HWY_ATTR {
-    return Triple<Number>{choose(condition, a.x, b.x), choose(condition, a.y, b.y),
-                          choose(condition, a.z, b.z)};
-  };
-  return {column(yes.x, no.x), column(yes.y, no.y), column(yes.z, no.z)};
-}
 /// A : B
 template <class Number>
 HWY_INLINE Number contract(const Matrix<Number>& a, const Matrix<Number>& b) {
@@ -134,19 +125,19 @@ struct TetrahedronLanes {
     rate = gradient_of(v, b);
   }
 
-  /// B = sum w_i b_i b_i^T
+  /// B = sum w_i b_i b_i^T: F' changes by T B for a stress impulse T.
   [[nodiscard]] HWY_INLINE Scale<Number> squares() const {
     Scale<Number> squares = diagonal(Number(0.0));
     for (int i = 0; i < 4; ++i) squares = sum(squares, square(w[i], b[i]));
     return squares;
   }
 
-  /// Writes velocities where `moves` holds.
+  /// Writes the velocities after the stress impulse T, where `moves` holds.
   template <class Condition>
-  HWY_INLINE void write(const TetrahedronBlock& block, int lane, const Condition& moves,
-                        const Triple<Number> (&changes)[4], Real* velocity) const {
+  HWY_INLINE void push(const Matrix<Number>& impulse, const TetrahedronBlock& block, int lane,
+                       const Condition& moves, Real* velocity) const {
     for (int i = 0; i < 4; ++i) {
-      const Triple<Number> after = sum(v[i], changes[i]);
+      const Triple<Number> after = sum(v[i], scaled(w[i], times(impulse, b[i])));
       write_quad_narrowed(Quad<Number>{choose(moves, after.x, v[i].x), choose(moves, after.y, v[i].y),
                                        choose(moves, after.z, v[i].z), w[i]},
                           velocity, block.record[i] + lane);
@@ -158,24 +149,6 @@ struct TetrahedronLanes {
     const Triple<Number> t = scaled(s, a);
     return {t.x * a.x, t.x * a.y, t.x * a.z, t.y * a.y, t.y * a.z, t.z * a.z};
   }
-};
-
-/// How the corners of a row answer a stress impulse T: F' changes by K(T) = T B.
-template <class Number>
-class FreeCorners {
- public:
-  HWY_INLINE explicit FreeCorners(const TetrahedronLanes<Number>& lanes)
-      : lanes_(lanes), squares_(lanes.squares()) {}
-
-  [[nodiscard]] HWY_INLINE Matrix<Number> k(const Matrix<Number>& m) const { return times(m, squares_); }
-  /// What T does to the velocity of a corner.
-  [[nodiscard]] HWY_INLINE Triple<Number> change(const Matrix<Number>& impulse, int corner) const {
-    return scaled(lanes_.w[corner], times(impulse, lanes_.b[corner]));
-  }
-
- private:
-  const TetrahedronLanes<Number>& lanes_;
-  Scale<Number> squares_;  ///< B
 };
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE

@@ -48,11 +48,11 @@ struct ElasticRows {
 
 /// The stress impulse T of rows with theta = 0: there S = 1 / gamma_D, and D is the stress of the shape
 /// alone, which has no torque.
-template <class Number, class Corners>
+template <class Number>
 HWY_INLINE Matrix<Number> soft_impulse(const ElasticRows<Number>& rows, const Matrix<Number>& rate,
-                                       const Corners& corners) {
+                                       const Scale<Number>& squares) {
   const Matrix<Number> d = scaled(quotient(Number(-1.0), rows.gamma_shape), rows.shape_error);
-  const Matrix<Number> g_k = corners.k(rows.g);
+  const Matrix<Number> g_k = times(rows.g, squares);
   const Number right = Number(0.0) - contract(d, g_k) - contract(rows.g, rate) - rows.volume_error;
   const Number l = quotient(right, rows.gamma_volume + contract(rows.g, g_k));
   return sum(scaled(l, rows.g), d);
@@ -69,14 +69,10 @@ HWY_INLINE void solve_tetrahedron_blocks(const TetrahedronRun& run, const state:
     const int count = &block == &run.blocks.back() ? run.last_count : kTetrahedronLanes;
     for (int lane = 0; lane < count; lane += kLanesOf<Number>) {
       const TetrahedronLanes<Number> lanes(block, lane, position, velocity);
-      const FreeCorners<Number> corners(lanes);
       const Number square = contract(lanes.f, lanes.f);
       const ElasticRows<Number> rows(block, lane, run.inverse_h, lanes.f, square);
-      const Matrix<Number> impulse = soft_impulse(rows, lanes.rate, corners);
-      const Triple<Number> changes[4] = {corners.change(impulse, 0), corners.change(impulse, 1),
-                                         corners.change(impulse, 2), corners.change(impulse, 3)};
       const auto moves = above((lanes.w[0] + lanes.w[1] + lanes.w[2] + lanes.w[3]) * square, Number(0.0));
-      lanes.write(block, lane, moves, changes, velocity);
+      lanes.push(soft_impulse(rows, lanes.rate, lanes.squares()), block, lane, moves, velocity);
     }
   }
 }
@@ -166,12 +162,11 @@ HWY_INLINE void linearize_tetrahedron_blocks(const TetrahedronRun& run,
       const auto moves = above((lanes.w[0] + lanes.w[1] + lanes.w[2] + lanes.w[3]) * square, zero);
       const Number per_shape = choose(moves, quotient(one, rows.gamma_shape), zero);
       const Number per_volume = choose(moves, quotient(one, rows.gamma_volume), zero);
-      const Scale<Number> none = diagonal(zero);
       const Scale<Number> turns = inverse(sum(torques, diagonal(least)));
       const LinearStress<Number> stress = {
           lanes.f,
           rows.g,
-          {choose(moves, turns.xx, none.xx), choose(moves, turns.xy, zero), choose(moves, turns.xz, zero),
+          {choose(moves, turns.xx, zero), choose(moves, turns.xy, zero), choose(moves, turns.xz, zero),
            choose(moves, turns.yy, zero), choose(moves, turns.yz, zero), choose(moves, turns.zz, zero)},
           per_volume,
           per_shape * theta};
@@ -279,9 +274,7 @@ HWY_INLINE void damp_tetrahedron_lanes(const TetrahedronBlock& block, int lane, 
   rows.damp_stretch(1, gamma_stretch);
   rows.damp_shear(1, 2, gamma_shear);
   rows.damp_stretch(2, gamma_stretch);
-  Triple<Number> changes[4];
-  for (int i = 0; i < 4; ++i) changes[i] = scaled(lanes.w[i], times(rows.impulse(), lanes.b[i]));
-  lanes.write(block, lane, moves, changes, velocity);
+  lanes.push(rows.impulse(), block, lane, moves, velocity);
 }
 
 template <class Number>
