@@ -7,7 +7,9 @@
 #include "world/hook_stages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <span>
 
 namespace hooke::world {
 
@@ -57,23 +59,56 @@ bool disturbs(const Bodies& bodies, std::uint32_t body) {
 /// A particle wakes a sleeping body if it is faster than this [m/s] and presses on it.
 constexpr Real kWakingSpeed = Real(0.2);
 
-/// Wakes the sleeping bodies that fast particles press on. A cloth that lies still on a body does not wake
-/// it. Returns whether any woke.
+/// Share of its weight with which deformables may push a body that sleeps [ratio]. What bears a body or loads
+/// it never comes quite to rest: a plate that slept on a jelly became a wall, which the jelly was then
+/// pressed against, and a ball that slept on a net stayed in the air when the net sank. Smaller: a cloth that
+/// lies on a heavy body keeps it awake.
+constexpr Real kSleeperLoad = Real(0.1);
+
+/// Calls visit(body, force, normal, particles) with each contact of points of deformables.
+template <class Visit>
+void for_point_contacts(const state::Tables& t, const Visit& visit) {
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+    visit(t.contacts.body[row], t.contacts.normal_force[row], t.contacts.normal[row],
+          std::span(t.contacts.particle).subspan(row, 1));
+  }
+  for (const state::ElementContact& contact : t.element_contacts) {
+    visit(contact.body, contact.normal_force, contact.normal,
+          std::span(contact.particle).first(contact.count));
+  }
+}
+
+/// Sums up how deformables push each body.
+void find_pushes(WorldData& world) {
+  std::vector<Vec3>& pushes = world.frame.pushes;
+  pushes.assign(world.tables.bodies.motion.size(), {});
+  for_point_contacts(world.tables, [&](std::uint32_t body, Real force, Vec3 normal, auto&&) {
+    pushes[body] -= force * normal;  // The normal points from the body to the deformable.
+  });
+}
+
+/// Whether deformables bear a dynamic body, or load it.
+bool is_pushed(const WorldData& world, std::uint32_t body) {
+  const Bodies& bodies = world.tables.bodies;
+  const Real gravity = length(world.tables.desc.gravity) * std::abs(bodies.traits[body].gravity_scale);
+  return length(world.frame.pushes[body]) * bodies.motion[body].inverse_mass > kSleeperLoad * gravity;
+}
+
+/// Wakes the sleeping bodies that fast particles press on, and those that deformables push. A cloth that lies
+/// still on a body does not wake it. Returns whether any woke.
 bool wake_by_particles(WorldData& world) {
   state::Tables& t = world.tables;
   bool any = false;
-  const auto wake_if_hit = [&](std::uint32_t body, Real force, std::uint32_t particle) {
+  find_pushes(world);
+  for_point_contacts(t, [&](std::uint32_t body, Real force, Vec3 /*normal*/, auto&& particles) {
     if (!is_dynamic(t.bodies, body) || t.bodies.asleep[body] == 0 || !(force > Real(0))) return;
-    if (!(length(t.particles.velocity[particle].v) > kWakingSpeed)) return;
+    const bool is_hit = std::any_of(particles.begin(), particles.end(), [&](std::uint32_t p) {
+      return length(t.particles.velocity[p].v) > kWakingSpeed;
+    });
+    if (!is_hit && !is_pushed(world, body)) return;
     state::wake(t.bodies, body);
     any = true;
-  };
-  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row)
-    wake_if_hit(t.contacts.body[row], t.contacts.normal_force[row], t.contacts.particle[row]);
-  for (const state::ElementContact& element_contact : t.element_contacts) {
-    for (std::uint32_t i = 0; i < element_contact.count; ++i)
-      wake_if_hit(element_contact.body, element_contact.normal_force, element_contact.particle[i]);
-  }
+  });
   return any;
 }
 
@@ -135,6 +170,12 @@ void put_to_sleep(WorldData& world, Real dt) {
     const Real speed =
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
+  }
+  if (!t.contacts.particle.empty() || !t.element_contacts.empty()) {
+    find_pushes(world);
+    for (const std::uint32_t body : world.frame.awake) {
+      if (is_dynamic(bodies, body) && is_pushed(world, body)) bodies.rest_time[body] = Real(0);
+    }
   }
   const bool any_rests =
       std::any_of(world.frame.awake.begin(), world.frame.awake.end(),

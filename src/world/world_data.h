@@ -110,8 +110,9 @@ struct Frame {
   std::vector<ClosingPair> closing_pairs;  ///< In order of their manifolds.
   std::vector<ContactEvent> contacts_now;  ///< Contacts of bodies that ask for events.
   std::vector<SensorEvent> visits_now;
-  base::DisjointSets islands;            ///< Sets of bodies that may fall asleep together.
-  std::vector<Real> island_rest;         ///< Time for which each island has been at rest, at its root [s].
+  base::DisjointSets islands;     ///< Sets of bodies that may fall asleep together.
+  std::vector<Real> island_rest;  ///< Time for which each island has been at rest, at its root [s].
+  std::vector<Vec3> pushes;       ///< By body row: force of all points of deformables that press on it [N].
   std::vector<std::uint8_t> body_marks;  ///< By body: scratch of couple_articulations and share_out_contacts.
 
   // These members solve contacts of bodies.
