@@ -110,13 +110,15 @@ void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing,
   const auto pass = [&](auto solve) {
     solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solve);
   };
-  solver::note_pressed_points(tables, pressing, h, tetrahedra);
   solver::begin_stiff_solution(tetrahedra);
+  solver::note_pressed_points(tables, pressing, h, tetrahedra);
   pass(solver::linearize_tetrahedra);
-  for (int round = 1; round <= solver::kMostPressedRounds; ++round) {
+  for (int round = 1;; ++round) {
     solver::solve_for_change(tetrahedra, tables.particles, pass);
     solver::find_pressed_impulses(tetrahedra);
-    if (!solver::renew_pressed_points(pressing, tables, h, tetrahedra)) break;
+    if (round == 2 * solver::kMostPressedRounds || !solver::may_solve_again(tetrahedra)) break;
+    const bool may_hold = round < solver::kMostPressedRounds;
+    if (!solver::renew_pressed_points(pressing, tables, h, may_hold, tetrahedra)) break;
   }
   solver::finish_stiff_solution(tetrahedra, tables.particles);
 }

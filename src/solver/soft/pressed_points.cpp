@@ -57,103 +57,270 @@ void for_contacts(const state::Contacts& contacts, const PressedPoint& point, Vi
     visit(row, bit);
 }
 
+/// The normal, of unit length in double too: projections that are none to 1e-7 let a solution grow without
+/// bound where a contact pushes hard.
+DVec3 normal_of(const state::Contacts& contacts, std::size_t row) {
+  return normalize(vector_cast<double>(contacts.normal[row]));
+}
+
+/// The projection on the directions across n.
+Symmetric3<double> across(DVec3 n) {
+  return {1 - n.x * n.x, -n.x * n.y, -n.x * n.z, 1 - n.y * n.y, -n.y * n.z, 1 - n.z * n.z};
+}
+
+/// Lets friction of `most` resist a point that slides across n with `sliding`, with a mass that gives this
+/// friction at that speed. Returns false if the point rather sticks.
+bool slide(double most, DVec3 sliding, DVec3 n, PressedPoint& point) {
+  const double speed = length(sliding);
+  const double mobility = static_cast<double>(point.inverse_mass) * point.yielding;
+  if (!(speed > 0) || !(most * mobility < kMostDragOfPoints * speed)) return false;
+  const double drag = most / speed;
+  const Symmetric3<double> p = across(n);
+  point.drag = point.drag + Symmetric3<double>{drag * p.xx, drag * p.xy, drag * p.xz,
+                                               drag * p.yy, drag * p.yz, drag * p.zz};
+  return true;
+}
+
 /// Takes what held the point in the substep before, and what it is about to reach.
 void hold_at_first(const state::Tables& t, Real h, PressedPoint& point) {
   const state::Contacts& contacts = t.contacts;
   for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
     if (presses(t, row, h)) point.held |= bit;
-    const Real pressed = contacts.normal_force[row];
-    if (!(pressed > Real(0)) ||
-        length(contacts.friction_force[row]) < kStickingShare * contacts.friction[row] * pressed) {
-      point.stuck |= bit;
-    } else {
-      point.friction += vector_cast<double>(h * contacts.friction_force[row]);
+    point.stuck |= bit;
+    const Real most = contacts.friction[row] * contacts.normal_force[row];
+    if (!(length(contacts.friction_force[row]) < kStickingShare * most) && most > Real(0)) {
+      const auto n = normal_of(contacts, row);
+      const auto relative =
+          vector_cast<double>(t.particles.velocity[point.particle].v - contacts.surface_velocity[row]);
+      if (slide(static_cast<double>(h * most), relative - dot(n, relative) * n, n, point))
+        point.stuck &= ~bit;
+    } else if (!(contacts.friction[row] > Real(0))) {
+      point.stuck &= ~bit;
     }
   });
 }
 
-/// What a point is given for contacts to share out: where they hold it, the change of velocity that stress
-/// alone causes, and that of the solution across. Of friction beyond its limit the point gets what it can
-/// be, and the body the rest: that of a light point would be a large velocity.
-DVec3 released_change(Vec3 v, Real h, const PressedPoint& point, state::Tables& t) {
-  state::Contacts& contacts = t.contacts;
-  const auto w = static_cast<double>(point.inverse_mass);
-  const DVec3 free = w * point.impulse;
-  DVec3 change = point.change;
+/// What its contacts give a point in all, friction included [N s].
+DVec3 contact_impulse(const PressedPoint& point) {
+  return (1 / static_cast<double>(point.inverse_mass)) * point.change - point.impulse;
+}
+
+/// Calls visit(row, impulse) with the part of each contact that holds a point of what all give it. The first
+/// one has what none of them can give by pushing: its friction.
+template <class Visit>
+void for_shares(const state::Contacts& contacts, const PressedPoint& point, DVec3 impulse, Visit visit) {
+  if (point.held == 0) return;
+  const std::size_t first = point.contact + static_cast<std::size_t>(std::countr_zero(point.held));
+  DVec3 rest = impulse;
+  DVec3 of_first;
   for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
     if ((point.held & bit) == 0) return;
-    const auto n = vector_cast<double>(contacts.normal[row]);
-    const DVec3 rest = free - change;
-    change += dot(n, rest) * n;
-    const auto stopped = static_cast<double>(pressing_speed(contacts, row, v + vector_cast<Real>(change), h));
-    const double most = static_cast<double>(contacts.friction[row]) * std::max(stopped, 0.0);
-    const DVec3 across = rest - dot(n, rest) * n;
-    const double size = length(across);
-    const DVec3 given = (size > most ? most / size : 1) * across;
-    change += given;
-    contacts.normal_force[row] = static_cast<Real>(std::max(stopped, 0.0)) / (h * point.inverse_mass);
-    if (size > most && gives_way(t.bodies, contacts.body[row])) {
-      const Vec3 rest_of_friction = vector_cast<Real>((1 / w) * (across - given));
-      push_body(contacts.body[row], rest_of_friction, contacts.lever[row], t.bodies);
+    const auto n = normal_of(contacts, row);
+    const DVec3 part = std::max(dot(n, rest), 0.0) * n;
+    rest -= part;
+    if (row == first) {
+      of_first = part;
+    } else {
+      visit(row, part);
     }
   });
-  return change;
+  visit(first, of_first + rest);
+}
+
+/// The velocity of the surface at a contact after the solution.
+DVec3 surface_after(const state::Contacts& contacts, std::size_t row, const TetrahedronBlocks& tetrahedra) {
+  const HoldingBody* holder = tetrahedra.stiff.find_holder(contacts.body[row]);
+  const auto before = vector_cast<double>(contacts.surface_velocity[row]);
+  if (holder == nullptr) return before;
+  const HoldingBody::Six& y = holder->change;
+  return before + DVec3{y[0], y[1], y[2]} +
+         cross(DVec3{y[3], y[4], y[5]}, vector_cast<double>(contacts.lever[row]));
 }
 
 /// Lets go what does not hold a point, and takes hold where it would pass. Bodies do not pull, and friction
 /// has a limit. What was let go is not held again in the same substep, so that points do not flicker.
-void revise(const state::Tables& t, Real h, PressedPoint& point) {
+void revise(const state::Tables& t, Real h, bool may_hold, const TetrahedronBlocks& tetrahedra,
+            PressedPoint& point) {
   const state::Contacts& contacts = t.contacts;
-  const Vec3 before = t.particles.velocity[point.particle].v;
-  const Vec3 free = before + vector_cast<Real>(static_cast<double>(point.inverse_mass) * point.impulse);
-  const Vec3 now = before + vector_cast<Real>(point.change);
-  point.friction = {};
+  const DVec3 now = vector_cast<double>(t.particles.velocity[point.particle].v) + point.change;
+  const double mobility = static_cast<double>(point.inverse_mass) * point.yielding;
+  const DVec3 impulse = contact_impulse(point);
+  point.drag = {};
   for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
+    const auto n = normal_of(contacts, row);
+    const DVec3 relative = now - surface_after(contacts, row, tetrahedra);
     if ((point.held & bit) == 0) {
-      if ((point.let_go & bit) == 0 && pressing_speed(contacts, row, now, h) > Real(0)) point.held |= bit;
+      const double reach = static_cast<double>(std::max(contacts.separation[row], Real(0)) / h);
+      if (may_hold && dot(n, relative) + reach < 0)
+        ((point.let_go & bit) == 0 ? point.held : point.let_go) ^= bit;
       return;
     }
-    const Vec3 relative = free - contacts.surface_velocity[row];
-    const Vec3 across = relative - dot(contacts.normal[row], relative) * contacts.normal[row];
-    const Real stopped = pressing_speed(contacts, row, free, h);
-    if (!(stopped > Real(0))) {
+    const double pressed = dot(n, impulse);
+    if (!(pressed > 0)) {
       point.held &= ~bit;
       point.let_go |= bit;
       return;
     }
-    const Real rate = length(across);
-    const Real most = contacts.friction[row] * stopped;
-    if (!(rate < most)) point.stuck &= ~bit;
-    if ((point.stuck & bit) == 0 && rate > Real(0))
-      point.friction -= vector_cast<double>(std::min(most / rate, Real(1)) / point.inverse_mass * across);
+    const double most = static_cast<double>(contacts.friction[row]) * pressed;
+    const DVec3 friction = impulse - pressed * n;
+    const double size = length(friction);
+    if ((point.stuck & bit) == 0) {
+      if (slide(most, relative - dot(n, relative) * n, n, point)) return;
+      if (most > 0) point.stuck |= bit;
+    } else if (size > most) {
+      // It would slide with what friction lacks, where stress resists it.
+      if (most == 0 || slide(most, (mobility * (most / size - 1)) * friction, n, point)) point.stuck &= ~bit;
+    }
   });
 }
 
-/// Finds how a point answers, and how contacts change its velocity before stress does.
+/// How a held contact changes the velocity of a point that has `before` so far [m/s].
+DVec3 start_of(const state::Contacts& contacts, std::size_t row, Real h, bool sticks, DVec3 before) {
+  const auto n = normal_of(contacts, row);
+  const DVec3 relative = before - vector_cast<double>(contacts.surface_velocity[row]);
+  const double along = dot(n, relative);
+  const double stopped =
+      -along - static_cast<double>(std::max(contacts.separation[row], Real(0))) / static_cast<double>(h);
+  const DVec3 start = stopped * n;
+  return sticks ? start - (relative - along * n) : start;
+}
+
+/// The contact whose body a point becomes one with: the first that holds it, and one that gives way if there
+/// is any.
+std::size_t holding_contact(const state::Tables& t, const PressedPoint& point) {
+  std::size_t chosen = t.contacts.particle.size();
+  for_contacts(t.contacts, point, [&](std::size_t row, std::uint32_t bit) {
+    if ((point.held & bit) == 0) return;
+    const bool is_first = chosen == t.contacts.particle.size();
+    if (is_first ||
+        (!gives_way(t.bodies, t.contacts.body[chosen]) && gives_way(t.bodies, t.contacts.body[row])))
+      chosen = row;
+  });
+  return chosen;
+}
+
+/// Finds what holds a point, how it answers, and how contacts change its velocity before stress does.
 void find_answer(const state::Tables& t, const std::vector<int>& shares, Real h, PressedPoint& point) {
   const state::Contacts& contacts = t.contacts;
   const auto inverse_mass = static_cast<double>(point.inverse_mass);
-  point.answer = Symmetric3<double>::diagonal(inverse_mass);
   const DVec3 before = vector_cast<double>(t.particles.velocity[point.particle].v);
-  point.start = {};
+  point.answer = Symmetric3<double>::diagonal(inverse_mass);
+  point.holder = PressedPoint::kNone;
+  point.follows = {};
+  point.free = Symmetric3<double>::diagonal(1);
+  point.start = point.others_start = {};
+  const std::size_t holding = holding_contact(t, point);
   for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
-    if ((point.held & bit) == 0) return;
+    if (row != holding) return;
+    const bool sticks = (point.stuck & bit) != 0;
+    const bool is_dragged = point.drag.xx + point.drag.yy + point.drag.zz > 0;
+    const auto n = normal_of(contacts, row);
+    point.holder = contacts.body[row];
+    point.free = sticks ? Symmetric3<double>{} : across(n);
+    point.follows = sticks || is_dragged ? Symmetric3<double>::diagonal(1)
+                                         : Symmetric3<double>{n.x * n.x, n.x * n.y, n.x * n.z,
+                                                              n.y * n.y, n.y * n.z, n.z * n.z};
+    point.lever = vector_cast<double>(contacts.lever[row]);
+    point.start = start_of(contacts, row, h, sticks, before);
+    point.sliding = before - vector_cast<double>(contacts.surface_velocity[row]);
+  });
+  for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
+    if ((point.held & bit) == 0 || row == holding) return;
+    const bool sticks = (point.stuck & bit) != 0;
     const double mass = mass_behind(t, row, shares, inverse_mass);
     const double share = mass / (mass + 1 / inverse_mass);
-    const auto n = vector_cast<double>(contacts.normal[row]);
-    const DVec3 relative = before + point.start - vector_cast<double>(contacts.surface_velocity[row]);
-    const double along = dot(n, relative);
-    const double stopped =
-        -along - static_cast<double>(std::max(contacts.separation[row], Real(0))) / static_cast<double>(h);
-    if (stopped > 0 || contacts.normal_force[row] > Real(0)) point.start += share * stopped * n;
-    if ((point.stuck & bit) != 0) {
+    point.others_start +=
+        share * start_of(contacts, row, h, sticks, before + point.start + point.others_start);
+    if (sticks) {
       for (const DVec3& axis : {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}})
         point.answer = with_mass_along(point.answer, axis, mass);
-      point.start -= share * (relative - along * n);
     } else {
-      point.answer = with_mass_along(point.answer, n, mass);
+      point.answer = with_mass_along(point.answer, normal_of(contacts, row), mass);
     }
   });
+}
+
+/// How much of a body belongs to the points of a group: all of it if it presses on no other.
+double share_of_body(const state::Tables& t, std::uint32_t body, const std::vector<int>& shares, Real h,
+                     const std::vector<PressedPoint>& pressed) {
+  if (shares[body] == 0) return 1;
+  int own = 0;
+  for (const PressedPoint& point : pressed) {
+    for_contacts(t.contacts, point, [&](std::size_t row, std::uint32_t /*bit*/) {
+      if (t.contacts.body[row] == body) own += presses(t, row, h);
+    });
+  }
+  return own == 0 ? 1 : static_cast<double>(own) / shares[body];
+}
+
+/// Lists the bodies that hold points, with their shares of mass.
+void list_holders(const state::Tables& t, const std::vector<int>& shares, Real h,
+                  TetrahedronBlocks& tetrahedra) {
+  std::vector<HoldingBody>& holders = tetrahedra.stiff.holders;
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    if (point.holder == PressedPoint::kNone || tetrahedra.stiff.find_holder(point.holder) != nullptr)
+      continue;
+    HoldingBody body = {.body = point.holder, .moves = gives_way(t.bodies, point.holder)};
+    if (body.moves) {
+      const double share = share_of_body(t, point.holder, shares, h, tetrahedra.pressed);
+      const double mass = share / static_cast<double>(t.bodies.motion[point.holder].inverse_mass);
+      const Symmetric3<double> root = math::inverse(math::in_double(t.bodies.scale[point.holder]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        body.mass[k][k] = mass;
+        const DVec3 axis = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+        const DVec3 inertia = share * (root * (root * axis));
+        body.mass[3][3 + k] = inertia.x;
+        body.mass[4][3 + k] = inertia.y;
+        body.mass[5][3 + k] = inertia.z;
+      }
+    }
+    holders.push_back(body);
+  }
+}
+
+/// Mean of what contacts do to the velocities of points [first, end) of `pressed`: of those that something
+/// holds which does not give way, or of all where there are none.
+DVec3 mean_start(const TetrahedronBlocks& tetrahedra, std::size_t first, std::size_t end) {
+  DVec3 of_ground, of_all;
+  int on_ground = 0, count = 0;
+  for (std::size_t i = first; i < end; ++i) {
+    const PressedPoint& point = tetrahedra.pressed[i];
+    const HoldingBody* holder = tetrahedra.stiff.find_holder(point.holder);
+    if (holder == nullptr) continue;
+    of_all += point.start;
+    ++count;
+    if (holder->moves) continue;
+    of_ground += point.start;
+    ++on_ground;
+  }
+  if (on_ground > 0) return (1.0 / on_ground) * of_ground;
+  return count > 0 ? (1.0 / count) * of_all : DVec3{};
+}
+
+/// Lets the solution begin with what contacts do to each object as a whole, and to the bodies on it. Without
+/// this, what rests begins with all of its stiffness against gravity, and the error that is left of that is
+/// as large as the weight of a light load.
+void guess_changes(const state::Tables& t, TetrahedronBlocks& tetrahedra) {
+  const auto object_of = [&](std::size_t i) { return t.contacts.object[tetrahedra.pressed[i].contact]; };
+  for (std::size_t i = 0; i < tetrahedra.pressed.size();) {
+    const std::size_t first = i;
+    while (i < tetrahedra.pressed.size() && object_of(i) == object_of(first)) ++i;
+    const DVec3 mean = mean_start(tetrahedra, first, i);
+    const state::Rows rows = t.objects[object_of(first)].particles;
+    for (std::uint32_t p = rows.first; p < rows.end(); ++p) {
+      const std::size_t own = p - tetrahedra.first_particle;
+      if (!(t.particles.velocity[p].inverse_mass > Real(0)) || !(tetrahedra.volume_at[own] > Real(0)))
+        continue;
+      double* change = tetrahedra.stiff.change.data() + 4 * own;
+      change[0] = mean.x;
+      change[1] = mean.y;
+      change[2] = mean.z;
+    }
+    for (std::size_t k = first; k < i; ++k) {
+      HoldingBody* holder = tetrahedra.stiff.find_holder(tetrahedra.pressed[k].holder);
+      if (holder != nullptr && holder->moves) holder->change = {mean.x, mean.y, mean.z, 0, 0, 0};
+    }
+  }
 }
 
 }  // namespace
@@ -184,53 +351,85 @@ void note_pressed_points(const state::Tables& t, const std::vector<int>& shares,
     tetrahedra.pressed.push_back(point);
     tetrahedra.pressed_of[particle - first] = static_cast<std::uint32_t>(tetrahedra.pressed.size());
   }
+  tetrahedra.stiff.holders.clear();
+  list_holders(t, shares, h, tetrahedra);
+  guess_changes(t, tetrahedra);
 }
 
-bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& t, Real h,
+bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& t, Real h, bool may_hold,
                           TetrahedronBlocks& tetrahedra) {
   bool any = false;
   for (PressedPoint& point : tetrahedra.pressed) {
     const std::uint32_t held = point.held;
     const std::uint32_t stuck = point.stuck;
-    const DVec3 friction = point.friction;
-    revise(t, h, point);
-    const bool slides_alike = length(point.friction - friction) <= kFrictionError * length(point.friction);
-    if (slides_alike && point.held == held && (point.stuck & point.held) == (stuck & point.held)) continue;
-    point.is_new_hold = (point.held & ~held) != 0;
+    const Symmetric3<double> drag = point.drag;
+    revise(t, h, may_hold, tetrahedra, point);
+    const double size = drag.xx + drag.yy + drag.zz;
+    const double change = point.drag.xx + point.drag.yy + point.drag.zz - size;
+    const bool slides_alike = std::abs(change) <= kFrictionError * size;
+    if (slides_alike && point.held == held && (point.stuck & point.held) == (stuck & point.held)) {
+      point.drag = drag;
+      continue;
+    }
     find_answer(t, shares, h, point);
     any = true;
   }
+  list_holders(t, shares, h, tetrahedra);
   return any;
 }
 
 void release_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& t) {
   const Real most = Real(kParticlePushOutSpeed) * h;
-  for (const PressedPoint& point : tetrahedra.pressed) {
+  for (PressedPoint& point : tetrahedra.pressed) {
     Vec3& v = t.particles.velocity[point.particle].v;
-    v += vector_cast<Real>(released_change(v, h, point, t));
-    const Real deepest = -static_cast<Real>(point.yielding) * most;
-    for_contacts(t.contacts, point, [&](std::size_t row, std::uint32_t) {
-      t.contacts.separation[row] = std::max(t.contacts.separation[row], deepest);
+    v += vector_cast<Real>(point.change);
+    for_shares(t.contacts, point, contact_impulse(point), [&](std::size_t row, DVec3 impulse) {
+      if (!gives_way(t.bodies, t.contacts.body[row])) return;
+      push_body(t.contacts.body[row], vector_cast<Real>(-impulse), t.contacts.lever[row], t.bodies);
     });
     tetrahedra.pressed_of[point.particle - tetrahedra.first_particle] = 0;
+  }
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    const Real deepest = -static_cast<Real>(point.yielding) * most;
+    const Vec3 v = t.particles.velocity[point.particle].v;
+    for_contacts(t.contacts, point, [&](std::size_t row, std::uint32_t bit) {
+      Real& separation = t.contacts.separation[row];
+      separation = std::max(separation, deepest);
+      if ((point.held & bit) != 0) return;
+      const Vec3 surface = gives_way(t.bodies, t.contacts.body[row])
+                               ? velocity_now(t.bodies, t.contacts.body[row], t.contacts.lever[row]) +
+                                     t.contacts.belt_velocity[row]
+                               : t.contacts.surface_velocity[row];
+      separation = std::max(separation, h * dot(t.contacts.normal[row], surface - v));
+      t.contacts.normal_force[row] = Real(0);
+      t.contacts.friction_force[row] = {};
+    });
   }
 }
 
 void settle_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& t) {
+  state::Contacts& contacts = t.contacts;
   for (const PressedPoint& point : tetrahedra.pressed) {
     if (point.held == 0) continue;
-    const std::size_t row = point.contact + static_cast<std::size_t>(std::countr_zero(point.held));
-    const std::uint32_t body = t.contacts.body[row];
-    if (!gives_way(t.bodies, body)) continue;
-    const Vec3 n = t.contacts.normal[row];
+    const DVec3 given = contact_impulse(point);
+    for_shares(contacts, point, given, [&](std::size_t row, DVec3 impulse) {
+      const auto n = normal_of(contacts, row);
+      const double along = dot(n, impulse);
+      contacts.normal_force[row] += static_cast<Real>(along) / h;
+      contacts.friction_force[row] += (Real(1) / h) * vector_cast<Real>(impulse - along * n);
+    });
+    if (point.holder == PressedPoint::kNone || !gives_way(t.bodies, point.holder)) continue;
+    const std::size_t row = holding_contact(t, point);
+    const Vec3 n = contacts.normal[row];
     Vec3& v = t.particles.velocity[point.particle].v;
     const Vec3 relative =
-        v - velocity_now(t.bodies, body, t.contacts.lever[row]) - t.contacts.belt_velocity[row];
+        v - velocity_now(t.bodies, point.holder, contacts.lever[row]) - contacts.belt_velocity[row];
     const Real along = dot(n, relative);
-    Vec3 change = (-along - std::max(t.contacts.separation[row], Real(0)) / h) * n;
-    if ((point.stuck & point.held & (~point.held + 1)) != 0) change -= relative - along * n;
+    Vec3 change = (-along - std::max(contacts.separation[row], Real(0)) / h) * n;
+    const std::uint32_t bit = std::uint32_t{1} << (row - point.contact);
+    if ((point.stuck & bit) != 0) change -= relative - along * n;
     v += change;
-    push_body(body, (Real(-1) / point.inverse_mass) * change, t.contacts.lever[row], t.bodies);
+    push_body(point.holder, (Real(-1) / point.inverse_mass) * change, contacts.lever[row], t.bodies);
   }
   tetrahedra.pressed.clear();
 }

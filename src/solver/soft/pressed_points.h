@@ -13,26 +13,27 @@ namespace hooke::solver {
 /// of the body.
 void count_pressing_points(const state::Tables& tables, Real h, std::vector<int>& shares);
 
-/// Notes the points of solids that bodies press on, and how hard they are to move with a share of the body's
-/// mass each. Otherwise stress would push them as if they were free, and reach a heavy body only as what
-/// stops a light point: a jelly under 45 times its mass gained more than twice the energy of the fall.
+/// Notes the points of solids that bodies press on, the bodies that hold them with their shares of mass, and
+/// what contacts do to each object as a whole, with which the solution begins. Otherwise stress would push
+/// points as if they were free, and reach a heavy body only as what stops a light point: a jelly under 45
+/// times its mass gained more than twice the energy of the fall. Call it after begin_stiff_solution.
 void note_pressed_points(const state::Tables& tables, const std::vector<int>& shares, Real h,
                          TetrahedronBlocks& tetrahedra);
 
-/// Lets go points that do not stay where they touch, by the velocity that their impulses alone would give
-/// them, takes hold of those that would pass, and finds friction where they slide.
-/// Returns whether any point changed.
+/// Lets go points that do not stay where they touch, and finds friction where they slide. Takes hold of those
+/// that would pass if `may_hold`; otherwise it comes to an end. Returns whether any point changed.
 [[nodiscard]] bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& tables, Real h,
-                                        TetrahedronBlocks& tetrahedra);
+                                        bool may_hold, TetrahedronBlocks& tetrahedra);
 
-/// Gives each point that was noted the velocity that its impulses alone cause where contacts hold it, which
-/// then share these impulses out. Overlaps count as at most what stress lets leave at once: a move of one
-/// point strains what is stiff. It changes bodies: call it for one group after the other.
+/// Gives each point that was noted the velocity of the solution, and bodies the impulses with which they hold
+/// it. Contacts that the solution let go do not act in this substep. Overlaps count as at most what stress
+/// lets leave at once: a move of one point strains what is stiff. It changes bodies: call it for one group
+/// after the other.
 void release_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& tables);
 
-/// Gives points that a body holds the velocity of its surface, and forgets them: contacts yield a little to
-/// the impulses of what is stiff, which would then be strained. Momentum stays. Call it after contacts, for
-/// one group after the other.
+/// Adds the impulses of the solution to the forces of contacts, gives points that a body holds the velocity
+/// of its surface, which others may have pushed since, and forgets them. Momentum stays. Call it after
+/// contacts, for one group after the other.
 void settle_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& tables);
 
 }  // namespace hooke::solver

@@ -25,10 +25,11 @@ inline constexpr Real kMostDampingOfMass = Real(0.5);
 inline constexpr Real kMostDampingOfStiffness = Real(10);
 
 /// Solutions of a stiff solid in a substep, between which points are let go where they do not stay, and held
-/// where they would pass. Chosen by hand; no measurement is recorded.
+/// where they would pass; in as many more they are let go alone. Chosen by hand; no measurement is recorded.
 inline constexpr int kMostPressedRounds = 8;
 
-/// Most of its own mass that a point of a solid gets of what presses on it [ratio]: that of the ground.
+/// Most of its own mass that a point of a solid gets of what presses on it besides the body that holds it
+/// [ratio]: that of the ground.
 /// Smaller: with 1e3 the points of a jelly of 1 GPa moved into the ground, and it gained 80 times its energy.
 /// Larger: rounding of what moves it gets larger.
 inline constexpr double kMostMassShare = 1e9;
@@ -37,7 +38,11 @@ inline constexpr double kMostMassShare = 1e9;
 /// Chosen by hand; no measurement is recorded.
 inline constexpr Real kStickingShare = Real(0.95);
 
-/// Change of the friction on a point of a solid, over the friction, from which on the solid is solved again
+/// Drag of friction on a point of a solid, over the mass with which stress resists its motion, from which on
+/// the point sticks [ratio]. Chosen by hand; no measurement is recorded.
+inline constexpr double kMostDragOfPoints = 1e4;
+
+/// Change of the drag on a point of a solid, over the drag, from which on the solid is solved again
 /// [ratio]. Without friction in the solution a jelly under 45 times its mass gained 2.5 % of its energy.
 /// Chosen by hand; no measurement of the value is recorded.
 inline constexpr double kFrictionError = 0.1;

@@ -4,11 +4,15 @@
 #include "solver/solid/solid_tuning.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace hooke::solver {
 
 namespace {
+
+using math::Symmetric3;
+using Six = HoldingBody::Six;
 
 DVec3 at(const std::vector<double>& of, std::size_t i) {
   return {of[4 * i], of[4 * i + 1], of[4 * i + 2]};
@@ -23,44 +27,161 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
 }
+double product(const Six& a, const Six& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+Six product(const std::array<Six, 6>& m, const Six& v) {
+  Six result = {};
+  for (std::size_t i = 0; i < 6; ++i) result[i] = product(m[i], v);
+  return result;
+}
+
+/// The velocity at a lever of a body that moves by `motion`.
+DVec3 velocity_at(const Six& motion, DVec3 lever) {
+  return DVec3{motion[0], motion[1], motion[2]} + cross(DVec3{motion[3], motion[4], motion[5]}, lever);
+}
+/// Adds an impulse at a lever.
+void add_impulse(DVec3 impulse, DVec3 lever, Six& to) {
+  const DVec3 angular = cross(lever, impulse);
+  const Six parts = {impulse.x, impulse.y, impulse.z, angular.x, angular.y, angular.z};
+  for (std::size_t i = 0; i < 6; ++i) to[i] += parts[i];
+}
+/// Adds the mass M of a point at a lever, so that the six numbers m y + ... are its impulses.
+void add_mass(const Symmetric3<double>& m, DVec3 lever, std::array<Six, 6>& to) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    Six motion = {};
+    motion[k] = 1;
+    Six impulse = {};
+    add_impulse(m * velocity_at(motion, lever), lever, impulse);
+    for (std::size_t i = 0; i < 6; ++i) to[i][k] += impulse[i];
+  }
+}
+
+/// Factors L D L^T in place: L below the diagonal, 1 / D on it. What nearly nothing resists stays at rest.
+void factorize(std::array<Six, 6>& m) {
+  constexpr double kLeastPivot = 1e-12;
+  Six d = {};
+  for (std::size_t j = 0; j < 6; ++j) {
+    const double whole = m[j][j];
+    d[j] = whole;
+    for (std::size_t k = 0; k < j; ++k) d[j] -= m[j][k] * m[j][k] * d[k];
+    const double inverse = d[j] > kLeastPivot * whole ? 1 / d[j] : 0;
+    for (std::size_t i = j + 1; i < 6; ++i) {
+      for (std::size_t k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k] * d[k];
+      m[i][j] *= inverse;
+    }
+    m[j][j] = inverse;
+  }
+}
+
+Six solved(const std::array<Six, 6>& factor, Six x) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < i; ++k) x[i] -= factor[i][k] * x[k];
+  }
+  for (std::size_t i = 6; i-- > 0;) {
+    x[i] *= factor[i][i];
+    for (std::size_t k = i + 1; k < 6; ++k) x[i] -= factor[k][i] * x[k];
+  }
+  return x;
+}
 
 /// The part of the diagonal that the rows give.
-math::Symmetric3<double> diagonal_of(const StiffSolution& stiff, std::size_t i) {
+Symmetric3<double> diagonal_of(const StiffSolution& stiff, std::size_t i) {
   const double* d = stiff.diagonal.data() + 8 * i;
   return {d[0], d[1], d[2], d[4], d[5], d[6]};
 }
 
-/// The change of a particle's velocity so far, without what its contacts began with.
-DVec3 own_change(const TetrahedronBlocks& tetrahedra, std::size_t i) {
-  const DVec3 change = at(tetrahedra.stiff.change, i);
+const PressedPoint* pressed_point(const TetrahedronBlocks& tetrahedra, std::size_t i) {
   const std::uint32_t pressed = tetrahedra.pressed_of[i];
-  return pressed != 0 ? change - tetrahedra.pressed[pressed - 1].start : change;
+  return pressed != 0 ? &tetrahedra.pressed[pressed - 1] : nullptr;
 }
 
-DVec3 friction_on(const TetrahedronBlocks& tetrahedra, std::size_t i) {
-  const std::uint32_t pressed = tetrahedra.pressed_of[i];
-  return pressed != 0 ? tetrahedra.pressed[pressed - 1].friction : DVec3{};
+/// The projection on the directions across which a point is held.
+Symmetric3<double> held_of(const PressedPoint& point) {
+  const Symmetric3<double>& f = point.free;
+  return {1 - f.xx, -f.xy, -f.xz, 1 - f.yy, -f.yz, 1 - f.zz};
 }
 
+/// F M F for symmetric matrices.
+Symmetric3<double> sandwich(const Symmetric3<double>& f, const Symmetric3<double>& m) {
+  const DVec3 x = f * (m * (f * DVec3{1, 0, 0}));
+  const DVec3 y = f * (m * (f * DVec3{0, 1, 0}));
+  const DVec3 z = f * (m * (f * DVec3{0, 0, 1}));
+  return {x.x, x.y, x.z, y.y, y.z, z.z};
+}
+
+/// The inverse of M in the directions in which a point is free, and 0 across them.
+Symmetric3<double> inverse_within(const PressedPoint& point, const Symmetric3<double>& m) {
+  const double size = m.xx + m.yy + m.zz;
+  const Symmetric3<double> p = held_of(point);
+  const Symmetric3<double> rest = {size * p.xx, size * p.xy, size * p.xz,
+                                   size * p.yy, size * p.yz, size * p.zz};
+  return sandwich(point.free, math::inverse(sandwich(point.free, m) + rest));
+}
+
+/// The body that moves a point, null if there is none.
+HoldingBody* mover_of(StiffSolution& stiff, const PressedPoint& point) {
+  HoldingBody* holder = stiff.find_holder(point.holder);
+  return holder != nullptr && holder->moves ? holder : nullptr;
+}
+
+/// The part of a change or a direction by which a point slides.
+DVec3 slip_of(const PressedPoint& point, DVec3 of_point, const HoldingBody* mover, const Six& of_mover) {
+  return mover != nullptr ? of_point - velocity_at(of_mover, point.lever) : of_point;
+}
+
+/// Takes masses, and what preconditions the particles and the bodies that hold some.
 void take_masses(TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
   StiffSolution& stiff = tetrahedra.stiff;
+  for (HoldingBody& body : stiff.holders) body.factor = body.mass;
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
     stiff.mass[i] = {};
     stiff.per_diagonal[i] = {};
     const Real inverse_mass = particles.velocity[tetrahedra.first_particle + i].inverse_mass;
     if (!(inverse_mass > Real(0)) || !(tetrahedra.volume_at[i] > Real(0))) continue;
-    const std::uint32_t pressed = tetrahedra.pressed_of[i];
-    stiff.mass[i] = pressed != 0 ? math::inverse(tetrahedra.pressed[pressed - 1].answer)
-                                 : math::Symmetric3<double>::diagonal(1 / static_cast<double>(inverse_mass));
-    stiff.per_diagonal[i] = math::inverse(stiff.mass[i] + diagonal_of(stiff, i));
+    const PressedPoint* point = pressed_point(tetrahedra, i);
+    if (point == nullptr) {
+      stiff.mass[i] = Symmetric3<double>::diagonal(1 / static_cast<double>(inverse_mass));
+      stiff.per_diagonal[i] = math::inverse(stiff.mass[i] + diagonal_of(stiff, i));
+      continue;
+    }
+    stiff.mass[i] = math::inverse(point->answer);
+    const Symmetric3<double> resisting = stiff.mass[i] + diagonal_of(stiff, i);
+    stiff.per_diagonal[i] = inverse_within(*point, resisting + point->drag);
+    if (HoldingBody* mover = mover_of(stiff, *point))
+      add_mass(sandwich(point->follows, resisting), point->lever, mover->factor);
   }
+  for (HoldingBody& body : stiff.holders) factorize(body.factor);
 }
 
-/// Finds what the residual asks for by itself, in the place of `image`, and its size.
-double precondition(StiffSolution& stiff) {
+/// Finds what the residual asks for by itself, in the place of `image` and `wanted`, and its size.
+double precondition(TetrahedronBlocks& tetrahedra) {
+  StiffSolution& stiff = tetrahedra.stiff;
   for (std::size_t i = 0; i < stiff.mass.size(); ++i)
     set(stiff.per_diagonal[i] * at(stiff.residual, i), i, stiff.image);
-  return product(stiff.residual, stiff.image);
+  for (HoldingBody& body : stiff.holders) body.wanted = body.residual;
+  double size = 0;
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    const std::size_t i = point.particle - tetrahedra.first_particle;
+    const DVec3 own = at(stiff.image, i) + stiff.per_diagonal[i] * point.drag_lacks;
+    set(own, i, stiff.image);
+    size += dot(own, point.drag_lacks);
+    if (HoldingBody* mover = mover_of(stiff, point))
+      add_impulse(point.follows * at(stiff.residual, i), point.lever, mover->wanted);
+  }
+  for (HoldingBody& body : stiff.holders) {
+    body.wanted = body.moves ? solved(body.factor, body.wanted) : Six{};
+    size += product(body.wanted, body.residual);
+  }
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    const HoldingBody* mover = mover_of(stiff, point);
+    if (mover == nullptr) continue;
+    const std::size_t i = point.particle - tetrahedra.first_particle;
+    set(at(stiff.image, i) + point.follows * velocity_at(mover->wanted, point.lever), i, stiff.image);
+  }
+  return size + product(stiff.residual, stiff.image);
 }
 
 }  // namespace
@@ -81,16 +202,43 @@ void begin_stiff_solution(TetrahedronBlocks& tetrahedra) {
   stiff.solutions = 0;
 }
 
+bool look_back(TetrahedronBlocks& tetrahedra) {
+  StiffSolution& stiff = tetrahedra.stiff;
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    HoldingBody* holder = stiff.find_holder(point.holder);
+    if (holder == nullptr) continue;
+    const std::size_t i = point.particle - tetrahedra.first_particle;
+    const DVec3 held = point.start + velocity_at(holder->change, point.lever);
+    set(point.free * at(stiff.change, i) + held_of(point) * held, i, stiff.change);
+  }
+  stiff.direction = stiff.change;
+  std::fill(stiff.image.begin(), stiff.image.end(), 0.0);
+  return std::any_of(stiff.change.begin(), stiff.change.end(), [](double v) { return v != 0; });
+}
+
 void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
   StiffSolution& stiff = tetrahedra.stiff;
   take_masses(tetrahedra, particles);
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
-    const DVec3 given = at(stiff.force, i) + friction_on(tetrahedra, i) - at(stiff.image, i);
-    set(given - stiff.mass[i] * own_change(tetrahedra, i), i, stiff.residual);
+    const DVec3 lacks = at(stiff.force, i) - at(stiff.image, i);
+    DVec3 change = at(stiff.change, i);
+    if (const PressedPoint* point = pressed_point(tetrahedra, i)) change -= point->others_start;
+    set(lacks - stiff.mass[i] * change, i, stiff.residual);
   }
-  stiff.size = precondition(stiff);
+  for (PressedPoint& point : tetrahedra.pressed) {
+    const HoldingBody* mover = mover_of(stiff, point);
+    const DVec3 change = at(stiff.change, point.particle - tetrahedra.first_particle);
+    const DVec3 slip = slip_of(point, change, mover, mover != nullptr ? mover->change : Six{});
+    point.drag_lacks = -(point.drag * (point.sliding + slip));
+  }
+  for (HoldingBody& body : stiff.holders) {
+    body.residual = product(body.mass, body.change);
+    for (double& lacks : body.residual) lacks = -lacks;
+  }
+  stiff.size = precondition(tetrahedra);
   if (!(stiff.first_size > 0)) stiff.first_size = stiff.size;
   stiff.direction = stiff.image;
+  for (HoldingBody& body : stiff.holders) body.direction = body.wanted;
   std::fill(stiff.image.begin(), stiff.image.end(), 0.0);
 }
 
@@ -100,11 +248,26 @@ bool needs_direction(const TetrahedronBlocks& tetrahedra) {
          stiff.solutions < kMostStiffSolidDirections;
 }
 
+bool may_solve_again(const TetrahedronBlocks& tetrahedra) {
+  return 2 * tetrahedra.stiff.solutions < kMostStiffSolidDirections;
+}
+
 void advance(TetrahedronBlocks& tetrahedra) {
   StiffSolution& stiff = tetrahedra.stiff;
   for (std::size_t i = 0; i < stiff.mass.size(); ++i)
     set(at(stiff.image, i) + stiff.mass[i] * at(stiff.direction, i), i, stiff.image);
-  const double curvature = product(stiff.direction, stiff.image);
+  double curvature = product(stiff.direction, stiff.image);
+  for (const HoldingBody& body : stiff.holders)
+    curvature += product(body.direction, product(body.mass, body.direction));
+  const auto slip_along = [&](const PressedPoint& point) {
+    const HoldingBody* mover = mover_of(stiff, point);
+    const DVec3 direction = at(stiff.direction, point.particle - tetrahedra.first_particle);
+    return slip_of(point, direction, mover, mover != nullptr ? mover->direction : Six{});
+  };
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    const DVec3 slip = slip_along(point);
+    curvature += dot(slip, point.drag * slip);
+  }
   ++stiff.solutions;
   if (!(curvature > 0)) {
     stiff.size = 0;
@@ -115,12 +278,23 @@ void advance(TetrahedronBlocks& tetrahedra) {
     stiff.change[i] += along * stiff.direction[i];
     stiff.residual[i] -= along * stiff.image[i];
   }
-  const double size = precondition(stiff);
+  for (PressedPoint& point : tetrahedra.pressed) point.drag_lacks -= along * (point.drag * slip_along(point));
+  for (HoldingBody& body : stiff.holders) {
+    const Six image = product(body.mass, body.direction);
+    for (std::size_t k = 0; k < 6; ++k) {
+      body.change[k] += along * body.direction[k];
+      body.residual[k] -= along * image[k];
+    }
+  }
+  const double size = precondition(tetrahedra);
   const double kept = size / stiff.size;
   stiff.size = size;
   for (std::size_t i = 0; i < stiff.direction.size(); ++i) {
     stiff.direction[i] = stiff.image[i] + kept * stiff.direction[i];
     stiff.image[i] = 0;
+  }
+  for (HoldingBody& body : stiff.holders) {
+    for (std::size_t k = 0; k < 6; ++k) body.direction[k] = body.wanted[k] + kept * body.direction[k];
   }
 }
 
@@ -129,22 +303,11 @@ void find_pressed_impulses(TetrahedronBlocks& tetrahedra) {
   for (PressedPoint& point : tetrahedra.pressed) {
     const std::size_t i = point.particle - tetrahedra.first_particle;
     point.change = at(stiff.change, i);
-    point.impulse = at(stiff.residual, i) + stiff.mass[i] * own_change(tetrahedra, i) - point.friction;
+    point.impulse = at(stiff.residual, i) + stiff.mass[i] * (point.change - point.others_start);
     const auto resisting = diagonal_of(stiff, i);
     point.yielding = std::min(
         1.0, 3 / (static_cast<double>(point.inverse_mass) * (resisting.xx + resisting.yy + resisting.zz)));
   }
-}
-
-bool look_back(TetrahedronBlocks& tetrahedra) {
-  StiffSolution& stiff = tetrahedra.stiff;
-  for (PressedPoint& point : tetrahedra.pressed) {
-    if (point.is_new_hold) set(point.start, point.particle - tetrahedra.first_particle, stiff.change);
-    point.is_new_hold = false;
-  }
-  stiff.direction = stiff.change;
-  std::fill(stiff.image.begin(), stiff.image.end(), 0.0);
-  return std::any_of(stiff.change.begin(), stiff.change.end(), [](double v) { return v != 0; });
 }
 
 void finish_stiff_solution(TetrahedronBlocks& tetrahedra, state::Particles& particles) {

@@ -33,6 +33,10 @@ void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles);
 /// Whether the residual is too large still.
 [[nodiscard]] bool needs_direction(const TetrahedronBlocks& tetrahedra);
 
+/// Whether enough directions are left to solve for other contacts to the end. What is not solved to the end
+/// may gain energy; a contact that pulls for a substep does not.
+[[nodiscard]] bool may_solve_again(const TetrahedronBlocks& tetrahedra);
+
 /// Goes along the direction as far as its image says, and finds the next one.
 void advance(TetrahedronBlocks& tetrahedra);
 

@@ -6,6 +6,8 @@
 #include "state/particles.h"
 #include "state/tetrahedra.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -67,22 +69,48 @@ struct TetrahedronPass {
   int last_count = kTetrahedronLanes;  ///< Rows in the last block.
 };
 
-/// A point of a solid that a body presses on. While solids are solved it also has its share of the body's
-/// mass, because it is as hard to move: along the normal, and across it where it does not slide.
+/// A point of a solid that touches bodies. While solids are solved, what holds it is one with it.
 struct PressedPoint {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
   std::uint32_t particle = 0;
-  std::size_t contact = 0;   ///< Row of its first contact.
-  std::uint32_t held = 0;    ///< Bit i: contact i holds it along the normal.
-  std::uint32_t stuck = 0;   ///< Bit i: contact i holds it across the normal, too.
-  std::uint32_t let_go = 0;  ///< Bit i: contact i has let it go in this substep.
-  bool is_new_hold = true;   ///< Its change has not begun with `start` yet.
+  std::size_t contact = 0;       ///< Row of its first contact.
+  std::uint32_t held = 0;        ///< Bit i: contact i holds it along the normal.
+  std::uint32_t stuck = 0;       ///< Bit i: contact i holds it across the normal, too.
+  std::uint32_t let_go = 0;      ///< Bit i: contact i has let it go in this substep.
+  std::uint32_t holder = kNone;  ///< Body of a contact that holds it.
+  /// The projection on the directions in which it follows the motion of its holder; 0 where nothing holds it.
+  math::Symmetric3<double> follows = {};
+  /// The projection on those in which it moves by itself. Where friction drags it, it does both.
+  math::Symmetric3<double> free = math::Symmetric3<double>::diagonal(1);
+  DVec3 lever = {};  ///< From the center of mass of the holder [m].
   Real inverse_mass = Real(0);
-  DVec3 start = {};     ///< By how much its contacts change its velocity before stress does [m/s].
-  DVec3 change = {};    ///< By how much all does so far [m/s].
-  DVec3 impulse = {};   ///< What stress has given it [N s].
-  DVec3 friction = {};  ///< What friction gives it where it slides [N s].
-  double yielding = 1;  ///< Its own mass over that with which stress resists its motion, 1 at most [ratio].
-  math::Symmetric3<double> answer = {};  ///< W: an impulse I changes its velocity by W I [1/kg].
+  DVec3 start = {};         ///< By how much its holder changes its velocity before stress does [m/s].
+  DVec3 others_start = {};  ///< The same of other contacts that hold it [m/s].
+  DVec3 change = {};        ///< By how much all does so far [m/s].
+  DVec3 impulse = {};       ///< What stress has given it [N s].
+  /// Where it slides, friction resists its velocity with this mass across each normal [kg]: mu N h / |v|.
+  math::Symmetric3<double> drag = {};
+  DVec3 sliding = {};     ///< Its velocity relative to what holds it, before all changes [m/s].
+  DVec3 drag_lacks = {};  ///< Impulse of the drag at the change so far [N s].
+  double yielding = 1;    ///< Its own mass over that with which stress resists its motion, 1 at most [ratio].
+  /// W: an impulse I changes its velocity by W I [1/kg]. It has the masses of all but its holder.
+  math::Symmetric3<double> answer = {};
+};
+
+/// A body that holds points of a group, with the share of its mass that they have. Six numbers are a velocity
+/// and an angular velocity about its center of mass, or an impulse and an angular impulse.
+struct HoldingBody {
+  using Six = std::array<double, 6>;
+
+  std::uint32_t body = 0;
+  bool moves = false;              ///< Whether it gives way.
+  std::array<Six, 6> mass = {};    ///< [kg, kg m, kg m^2]
+  std::array<Six, 6> factor = {};  ///< L D L^T of mass and diagonal; what is not positive counts as infinite.
+  Six change = {};                 ///< Change of its motion so far.
+  Six residual = {};               ///< Impulse that is lacking, without that of its points.
+  Six direction = {};
+  Six wanted = {};  ///< What the residual asks for.
 };
 
 /// A solution of all rows of a group at once, see solver/solid/stiff_solution.h. Vectors have four numbers
@@ -99,10 +127,23 @@ struct StiffSolution {
   std::vector<math::Symmetric3<double>> mass;          ///< W^-1 of each particle [kg].
   std::vector<math::Symmetric3<double>> per_diagonal;  ///< Inverse of mass and diagonal [1/kg]; 0 for what
                                                        ///< does not move.
+  std::vector<HoldingBody> holders;                    ///< In the order in which points name them.
   double size = 0;                                     ///< Square of the residual, by per_diagonal [J].
   double first_size = 0;                               ///< That of `force`.
   int solutions = 0;                                   ///< Directions taken in this substep.
   bool unconverged = false;  ///< Whether they were too few in some substep; read and cleared by end_step.
+
+  /// The holder with this body, null if it holds no point.
+  [[nodiscard]] const HoldingBody* find_holder(std::uint32_t body) const {
+    const auto found = std::find_if(holders.begin(), holders.end(),
+                                    [&](const HoldingBody& one) { return one.body == body; });
+    return found == holders.end() ? nullptr : &*found;
+  }
+  [[nodiscard]] HoldingBody* find_holder(std::uint32_t body) {
+    const auto found = std::find_if(holders.begin(), holders.end(),
+                                    [&](const HoldingBody& one) { return one.body == body; });
+    return found == holders.end() ? nullptr : &*found;
+  }
 };
 
 struct TetrahedronBlocks {
