@@ -58,6 +58,13 @@ constexpr std::array kRefusedCounts = {
     RefusedCount{&StepReport::solids_unconverged, "solids_unconverged",
                  "stiff solids took too many passes to be solved to the end, and yield more than they should",
                  "larger cells, less stiffness, or more particle_substeps"},
+    RefusedCount{
+        &StepReport::points_held_back, "points_held_back",
+        "times points were held back for a substep: surfaces jam, and only that keeps them from crossing",
+        "slower motion, stiffer or finer cloth, a smaller thickness, or more substeps"},
+    RefusedCount{&StepReport::surfaces_touching, "surfaces_touching",
+                 "parts of surfaces touched or crossed when they were looked at, and may cross",
+                 "a gap between cloths and solids where the scene begins"},
 };
 
 double in_double(Real value) {

@@ -416,7 +416,9 @@ struct ClothDesc {
 
   Real areal_density = Real(0.2);  ///< Mass per area [kg/m^2], positive; points have their share of area.
   std::optional<Real> total_mass = {};  ///< Mass of the cloth [kg]: replaces areal_density.
-  Real thickness = Real(0.004);         ///< Points keep half of it from what they touch [m]. Positive.
+  /// Points keep half of it from what they touch [m]. Positive. Of a surface that touches another, half of
+  /// the mean edge counts at most.
+  Real thickness = Real(0.004);
   /// Stiffness of each spring along an edge [N/m], or kRigid. A substep of h seconds carries about 0.8 m /
   /// h^2 of it in a sheet that hangs, and 1.4 m / h^2 in one that is pulled at an edge, m being the mass of a
   /// point: cloth that is to stretch less needs more substeps, larger cells or more mass.
@@ -448,6 +450,10 @@ struct ClothDesc {
   Real charge = Real(0);     ///< Electric charge of the cloth [C], shared out by mass. [-1e9, 1e9]
   Vec3 velocity = {};        ///< Velocity of all points at the start [m/s].
   ContactDesc contact = {};  ///< Surface of the cloth; only its friction counts.
+  /// Whether the cloth touches itself. It needs a thickness of at most half of the mean edge.
+  bool self_contact = false;
+  /// Which other cloths and solids it touches; all by default. Bodies are not asked.
+  FilterDesc filter = {};
 };
 
 /// A soft solid: a box of cells, the inside of a closed mesh, or tetrahedra as given.
@@ -511,7 +517,9 @@ struct SolidDesc {
   /// sigma_y / E. The stress of `damping` comes on top. No part is stretched for good beyond 5 times or below
   /// a fifth.
   Real yield_stress = kRigid;
-  Real thickness = Real(0.004);      ///< Points keep half of it from what they touch [m]. Positive.
+  /// Points keep half of it from what they touch [m]. Positive. Of a surface that touches another, half of
+  /// the mean edge counts at most.
+  Real thickness = Real(0.004);
   Real air_friction = Real(0);       ///< Viscous drag of the whole solid [N s/m], shared out by volume.
   std::vector<PinDesc> pins = {};    ///< Points that are held.
   std::vector<LoadDesc> loads = {};  ///< Masses that are added to points.
@@ -519,6 +527,10 @@ struct SolidDesc {
   Real charge = Real(0);     ///< Electric charge of the solid [C], shared out by volume. [-1e9, 1e9]
   Vec3 velocity = {};        ///< Velocity of all points at the start [m/s].
   ContactDesc contact = {};  ///< Surface of the solid; only its friction counts.
+  /// Whether the solid touches itself. It needs a thickness of at most half of the mean edge of its surface.
+  bool self_contact = false;
+  /// Which other cloths and solids it touches; all by default. Bodies are not asked.
+  FilterDesc filter = {};
 };
 
 /// A damped Hooke spring between two points of one object. With x = x_a - x_b, u = x / |x| and v the velocity

@@ -140,8 +140,15 @@ struct StepReport {
   std::uint32_t coupled_groups_cut_short = 0;
   /// Groups of stiff solids that used up their passes in some substep: they yield more than they should.
   std::uint32_t solids_unconverged = 0;
-  RouteCounts routes = {};  ///< How many contacts, hooks and ropes were solved in which way.
-  double detect_ms = 0;     ///< Time to find who is near whom, and where they touch [ms].
+  /// Times that a point of a cloth or a solid was held back for a particle substep, because nothing else kept
+  /// surfaces from crossing: they jam there.
+  std::uint32_t points_held_back = 0;
+  /// Pairs of parts of surfaces that touched or crossed when they were looked at. Nothing keeps them from
+  /// crossing until they are apart.
+  std::uint32_t surfaces_touching = 0;
+  std::uint32_t surface_searches = 0;  ///< How often contacts of surfaces were found anew, over all groups.
+  RouteCounts routes = {};             ///< How many contacts, hooks and ropes were solved in which way.
+  double detect_ms = 0;                ///< Time to find who is near whom, and where they touch [ms].
   double prepare_ms = 0;  ///< Time to choose how contacts and hooks are solved, and to make their rows [ms].
   double substep_ms = 0;  ///< Time of all substeps: forces, impacts, corrections, motion [ms].
   double finish_ms = 0;   ///< Time to quarantine, to break hooks, to put to sleep and to gather events [ms].

@@ -396,9 +396,13 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
     if (!gas) return gas.error();
   }
   const Points points = make_points(surface, desc, area, share);
+  const Result<void> touches = set_surface({desc.thickness, desc.self_contact, desc.filter}, points,
+                                           surface.triangles, "cloth.thickness", filled);
+  if (!touches) return touches.error();
   state::Deformable& object = append_object(PointRef::Kind::kCloth, points, desc.pins, tables);
   object.gas = filled.gas;
   object.gas_volume = filled.gas_volume;
+  take_surface(filled, object);
   object.friction = desc.contact.friction;
   object.yield_angle = desc.yield_angle;
   object.columns = static_cast<std::uint32_t>(surface.columns);

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numeric>
+#include <string>
+#include <utility>
 
 namespace hooke::build {
 
@@ -115,6 +119,37 @@ void append_spring(const SpringRow& spring, state::Tables& tables) {
   springs.kind.push_back(spring.kind);
   springs.form.push_back(spring.form);
   ++object.springs.count;
+}
+
+Result<void> set_surface(const SurfaceDesc& desc, const Points& points,
+                         const std::vector<std::array<std::uint32_t, 3>>& triangles, const char* where,
+                         state::Deformable& object) {
+  const std::vector<DVec3>& x = points.position;
+  double sum = 0;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : triangles) {
+    for (const double edge : {length(x[b] - x[a]), length(x[c] - x[b]), length(x[a] - x[c])}) {
+      sum += edge;
+      shortest = std::min(shortest, edge);
+    }
+  }
+  if (triangles.empty()) return {};
+  const double mean = sum / (3 * static_cast<double>(triangles.size()));
+  const auto thickness = static_cast<double>(desc.thickness);
+  if (desc.self_contact && thickness > 0.5 * mean) {
+    return Error{ErrorCode::kOutOfRange, where,
+                 "must be at most half of the mean edge, " + std::to_string(0.5 * mean) +
+                     " m, for contact with itself"};
+  }
+  auto rest = std::make_shared<std::vector<Vec3>>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) (*rest)[points.row_of[i]] = vector_cast<Real>(x[i] - x[0]);
+  object.rest_points = std::move(rest);
+  object.self_contact = desc.self_contact;
+  object.filter = desc.filter;
+  object.surface_edge = static_cast<Real>(mean);
+  object.surface_radius = static_cast<Real>(0.5 * std::min(thickness, 0.5 * mean));
+  object.self_distance = static_cast<Real>(std::min(thickness, 0.5 * shortest));
+  return {};
 }
 
 }  // namespace hooke::build

@@ -23,6 +23,7 @@ namespace {
 
 using geometry::TetrahedralMesh;
 using geometry::Tetrahedron;
+using geometry::Triangle;
 
 constexpr double kMostCells = 1 << 20;
 constexpr std::size_t kMostTetrahedra = std::size_t{1} << 24;
@@ -372,6 +373,16 @@ Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& poin
   return std::shared_ptr<const state::RestShape>(std::move(rest));
 }
 
+/// The triangles of a solid's surface between its points; none for points alone.
+std::vector<Triangle> surface_triangles(const SolidBody& body) {
+  if (!body.mesh.tetrahedra.empty()) return geometry::surface_of(body.mesh.tetrahedra);
+  std::vector<Triangle> triangles = body.skin->triangles;
+  for (Triangle& triangle : triangles) {
+    for (std::uint32_t& corner : triangle) corner = body.skin->vertices[corner].points[0];
+  }
+  return triangles;
+}
+
 }  // namespace
 
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
@@ -395,9 +406,14 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
     if (!made) return made.error();
     rest_shape = made.value();
   }
+  state::Deformable filled;
+  const Result<void> touches = set_surface({desc.thickness, desc.self_contact, desc.filter}, points,
+                                           surface_triangles(body.value()), "solid.thickness", filled);
+  if (!touches) return touches.error();
   state::Deformable& object = append_object(PointRef::Kind::kSolid, points, desc.pins, tables);
   object.rest_shape = std::move(rest_shape);
   object.friction = desc.contact.friction;
+  take_surface(filled, object);
   object.yield_stress = desc.yield_stress;
   if (desc.yield_stress < kRigid) object.rest_edges = rest_edges_of(mesh);
   object.skin = body.value().skin;

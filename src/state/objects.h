@@ -96,7 +96,17 @@ struct Deformable {
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);
-  bool points_drag = false;  ///< Some particle feels the air by itself: as a sphere, or by air friction.
+  // The fields below belong to contacts with other deformables (solver/surface). The three lengths follow
+  // from the description and the form at rest.
+  /// Positions at rest by row [m]: which parts of the surface are near each other. Set where there is a
+  /// surface.
+  std::shared_ptr<const std::vector<Vec3>> rest_points = {};
+  bool self_contact = false;      ///< The object touches itself.
+  FilterDesc filter = {};         ///< Which other deformables it touches.
+  Real surface_radius = Real(0);  ///< Distance that its surface keeps, of the sum of two [m].
+  Real self_distance = Real(0);   ///< Distance that its surface keeps from itself [m].
+  Real surface_edge = Real(0);    ///< Mean length of an edge of its surface at rest [m].
+  bool points_drag = false;       ///< Some particle feels the air by itself: as a sphere, or by air friction.
 
   [[nodiscard]] bool feels_air() const {
     return points_drag || drag_coefficient > Real(0) || lift_coefficient > Real(0);

@@ -9,6 +9,7 @@
 #include "solver/soft/spring_solve.h"
 #include "solver/solid/stiff_solution.h"
 #include "solver/solid/tetrahedron_solve.h"
+#include "solver/surface/surface_contacts.h"
 #include "state/check_tables.h"
 #include "world/force_stages.h"
 
@@ -242,6 +243,8 @@ void prepare_particle_rows(WorldData& world, Real h) {
 
 void begin_step(WorldData& world, double dt) {
   state::Tables& tables = world.tables;
+  solver::begin_surface_step(tables, tables.desc.substeps * tables.desc.particle_substeps,
+                             world.frame.surfaces);
   read_wind(world, tables.time + 0.5 * dt);
   begin_body_forces(world);
 
@@ -264,6 +267,7 @@ void begin_step(WorldData& world, double dt) {
 }
 
 void begin_particle_substep(WorldData& world, Real h) {
+  solver::begin_surface_substep(world.tables, world.frame.surfaces);
   for_soft_groups(world, [&world](const solver::SoftGroup& group, Division division) {
     if (!group.tetrahedra.any_damping) return;
     solve_passes(group.tetrahedra, division, kTetrahedronGrain, world.tables.particles,
@@ -355,6 +359,7 @@ void solve_solids(WorldData& world, Real h) {
 void move_particles(WorldData& world, Real h) {
   for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain,
              [&](Range rows) { solver::wide::move(h, rows, world.tables.particles); });
+  solver::truncate_surfaces(*world.pool, h, world.frame.surfaces, world.tables);
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
     division.for_rows(0, static_cast<int>(group.yields.tetrahedra.size()), kYieldGrain, [&](Range rows) {
       solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra);

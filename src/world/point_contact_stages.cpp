@@ -9,6 +9,7 @@
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
 #include "solver/soft/pressed_points.h"
+#include "solver/surface/surface_contacts.h"
 #include "state/check_contacts.h"
 
 namespace hooke::world {
@@ -42,10 +43,17 @@ void update_point_contacts(WorldData& world, Real h) {
 void solve_point_contacts(WorldData& world, Real h) {
   state::Tables& t = world.tables;
   collision::stop_rope_passes(*world.pool, h, world.frame.rope_contacts, t);
+  // Surfaces come before bodies: what is pressed between two bodies yields to them, and is cut off last.
+  solver::solve_surfaces(*world.pool, h, world.frame.surfaces, t);
   solver::solve_element_contacts(h, t);
   for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });
+  if (solver::refresh_surface_contacts(*world.pool, h, world.frame.surfaces, t)) {
+    for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
+      solver::solve_contacts_again(t, world.frame.surfaces.refreshed, rows, h, t.contacts, t.particles);
+    });
+  }
   for (solver::SoftGroup& group : world.derived.soft.groups)
     solver::settle_pressed_points(h, group.tetrahedra, t);
 }

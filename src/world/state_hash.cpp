@@ -70,6 +70,16 @@ void add_rest_form(StateHash& hash, const state::Deformable& object) {
   if (object.rest_edges) hash.add(*object.rest_edges);
 }
 
+/// Adds what the description said of contacts with deformables, if it said anything.
+void add_surface(StateHash& hash, const state::Deformable& object) {
+  const FilterDesc& filter = object.filter;
+  const FilterDesc usual = {};
+  if (!object.self_contact && filter.category == usual.category && filter.mask == usual.mask &&
+      filter.group == usual.group)
+    return;
+  add(hash, object.self_contact, filter.category, filter.mask, filter.group);
+}
+
 void add_objects(StateHash& hash, const Tables& t) {
   hash.add(t.objects.size());
   for (const state::Deformable& o : t.objects) {
@@ -79,6 +89,7 @@ void add_objects(StateHash& hash, const Tables& t) {
     for (const state::Rows& rows : {o.particles, o.springs, o.bends, o.triangles, o.segments, o.tetrahedra})
       add_rows(hash, rows);
     add_rest_form(hash, o);
+    add_surface(hash, o);
   }
   add_columns(hash, t.particles);
   add_columns(hash, t.springs);

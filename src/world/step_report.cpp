@@ -20,6 +20,11 @@ void count_refused(WorldData& world, StepReport& report) {
     report.contacts_refused += group.refused;
   for (solver::CoupledGroup& group : world.derived.coupled_groups.groups)
     report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
+  world.frame.surfaces.for_groups([&](const solver::SurfaceGroup& group) {
+    report.points_held_back += group.held_back;
+    report.surfaces_touching += group.uncertain;
+    report.surface_searches += group.searches;
+  });
   for (solver::SoftGroup& group : world.derived.soft.groups)
     report.solids_unconverged += std::exchange(group.tetrahedra.stiff.unconverged, false) ? 1 : 0;
 }
@@ -34,6 +39,9 @@ void count_rows(WorldData& world, StepReport& report) {
     report.contacts += element_contact.normal_force > Real(0) ? 1 : 0;
   for (const state::RopeContact& contact : tables.rope_contacts)
     report.contacts += contact.normal_force > Real(0) ? 1 : 0;
+  world.frame.surfaces.for_groups([&](const solver::SurfaceGroup& group) {
+    for (const solver::SurfaceRow& row : group.rows) report.contacts += row.pushed > Real(0) ? 1 : 0;
+  });
   report.contacts += tables.pairs.sleeping.contacts;
   for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
   report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.sleeping.pair.size());

@@ -230,6 +230,13 @@ std::vector<Field> cloth_rows() {
       field<kDesc, &ClothDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `areal_density`."),
       field<kDesc, &ClothDesc::thickness>("thickness", "m", kPositive,
                                           "Points keep half of it from what they touch."),
+      field<kDesc, &ClothDesc::self_contact>("self_contact", "", kAny, "Whether it touches itself."),
+      field<kDesc, &ClothDesc::filter, &FilterDesc::category>(
+          "category", "", kAny, "Bits of its categories, for contact with other deformables."),
+      field<kDesc, &ClothDesc::filter, &FilterDesc::mask>(
+          "mask", "", kAny, "Bits of the categories of other deformables that it touches."),
+      field<kDesc, &ClothDesc::filter, &FilterDesc::group>(
+          "group", "", kAny, "Deformables of one negative group never touch, of one positive group always."),
       field<kDesc, &ClothDesc::stretch_stiffness>("stretch_stiffness", "N/m", kNotNegativeOrRigid,
                                                   "Of each spring along an edge."),
       field<kDesc, &ClothDesc::shear_stiffness>("shear_stiffness", "N/m", kNotNegativeOrRigid,
@@ -299,6 +306,13 @@ std::vector<Field> solid_rows() {
                                              "Above this von Mises' stress it flows and keeps its new form."),
       field<kDesc, &SolidDesc::thickness>("thickness", "m", kPositive,
                                           "Points keep half of it from what they touch."),
+      field<kDesc, &SolidDesc::self_contact>("self_contact", "", kAny, "Whether it touches itself."),
+      field<kDesc, &SolidDesc::filter, &FilterDesc::category>(
+          "category", "", kAny, "Bits of its categories, for contact with other deformables."),
+      field<kDesc, &SolidDesc::filter, &FilterDesc::mask>(
+          "mask", "", kAny, "Bits of the categories of other deformables that it touches."),
+      field<kDesc, &SolidDesc::filter, &FilterDesc::group>(
+          "group", "", kAny, "Deformables of one negative group never touch, of one positive group always."),
       field<kDesc, &SolidDesc::air_friction>("air_friction", "N s/m", kNotNegative,
                                              "Viscous drag of the whole solid, shared out by volume."),
       field<&SceneSolid::pins>("pins", "", kAny, "Points that are held."),

@@ -121,4 +121,15 @@ void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Ran
   });
 }
 
+void solve_contacts_again(const state::Tables& tables, std::span<const std::uint8_t> marked,
+                          parallel::Range range, Real h, state::Contacts& contacts,
+                          state::Particles& particles) {
+  for_particles(tables.objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
+    if (marked[contacts.object[first]] == 0) return;
+    state::VelocityRecord& particle = particles.velocity[contacts.particle[first]];
+    if (contacts.coupled[first] != 0) return stop_at_ground(first, end, h, tables.bodies, contacts, particle);
+    for (std::size_t row = first; row < end; ++row) solve_row(row, h, contacts, particle);
+  });
+}
+
 }  // namespace hooke::solver

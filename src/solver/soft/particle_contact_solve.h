@@ -6,7 +6,10 @@
 #include "state/contacts.h"
 #include "state/objects.h"
 #include "state/particles.h"
+#include "state/tables.h"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hooke::solver {
@@ -35,5 +38,11 @@ void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, stat
 /// Moves the particle of a row out of the body that it overlaps.
 void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Contacts& contacts,
               state::Particles& particles);
+
+/// Solves the rows of marked objects once more after something else has changed velocities: forces add up,
+/// and nothing is moved out.
+void solve_contacts_again(const state::Tables& tables, std::span<const std::uint8_t> marked,
+                          parallel::Range range, Real h, state::Contacts& contacts,
+                          state::Particles& particles);
 
 }  // namespace hooke::solver

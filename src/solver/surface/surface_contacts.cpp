@@ -1,0 +1,102 @@
+#include "solver/surface/surface_contacts.h"
+
+#include "solver/surface/surface_detection.h"
+#include "solver/surface/surface_rows.h"
+#include "solver/surface/surface_truncation.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace hooke::solver {
+
+namespace {
+
+/// Whether some surface may touch another, or itself.
+bool may_touch(const state::Tables& t, const SurfaceMeshes& surfaces) {
+  return surfaces.meshes.size() > 1 ||
+         std::any_of(surfaces.meshes.begin(), surfaces.meshes.end(),
+                     [&](const SurfaceMesh& mesh) { return t.objects[mesh.object].self_contact; });
+}
+
+template <class Work>
+void for_groups(parallel::ThreadPool& pool, SurfaceContacts& contacts, Work work) {
+  parallel::for_items(pool, static_cast<int>(contacts.live_groups),
+                      [&](int i) { work(contacts.groups[static_cast<std::size_t>(i)]); });
+}
+
+/// Takes the positions with which the group begins the substep.
+void place_vertices(SurfaceContacts& contacts, const SurfaceGroup& group) {
+  for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
+    contacts.position[vertex].x = contacts.start[vertex].x + contacts.shift[mesh];
+  });
+}
+
+}  // namespace
+
+void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContacts& contacts) {
+  const bool changed = refresh_surfaces(tables, contacts.surfaces);
+  contacts.active = may_touch(tables, contacts.surfaces);
+  contacts.for_groups([](SurfaceGroup& group) {
+    group.known = false;
+    group.searches = group.held_back = group.clipped = group.corrections = group.uncertain = 0;
+  });
+  contacts.regroup = true;
+  contacts.substeps_left = substeps;
+  if (!changed || !contacts.active) return;
+  const std::size_t count = contacts.surfaces.particle.size();
+  const std::size_t meshes = contacts.surfaces.meshes.size();
+  contacts.live_groups = 0;
+  contacts.bounds.assign(meshes, {});
+  contacts.boxes.resize(meshes);
+  contacts.shift.assign(meshes, {});
+  contacts.start.assign(count, {});
+  contacts.position.assign(count, {});
+  contacts.found_at.assign(count, {});
+  contacts.velocity.assign(count, {});
+  contacts.cage.assign(count, {});
+  contacts.stays.assign(count, 0);
+  contacts.refreshed.assign(tables.objects.size(), 0);
+}
+
+void begin_surface_substep(const state::Tables& tables, SurfaceContacts& contacts) {
+  if (!contacts.active) return;
+  for (std::size_t i = 0; i < contacts.start.size(); ++i)
+    contacts.start[i] = tables.particles.position[contacts.surfaces.particle[i]];
+}
+
+void solve_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables) {
+  if (!contacts.active) return;
+  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+    if (!group.known) return;
+    place_vertices(contacts, group);
+    solve_surface_rows(h, contacts, group, tables.particles);
+  });
+}
+
+bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
+                              state::Tables& tables) {
+  if (!contacts.active) return false;
+  refresh_surface_groups(tables, h, contacts);
+  std::fill(contacts.refreshed.begin(), contacts.refreshed.end(), std::uint8_t{0});
+  std::atomic<bool> any = false;
+  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+    if (group.known && group.substeps_left > 0 && !leaves_cages(tables, h, contacts, group)) return;
+    any = true;
+    for (const std::uint32_t mesh : group.meshes)
+      contacts.refreshed[contacts.surfaces.meshes[mesh].object] = 1;
+    find_group_contacts(tables, h, contacts, group);
+    solve_surface_rows(h, contacts, group, tables.particles);
+  });
+  return any;
+}
+
+void truncate_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables) {
+  if (!contacts.active) return;
+  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+    truncate_group(h, contacts, group, tables.particles);
+    --group.substeps_left;
+  });
+  --contacts.substeps_left;
+}
+
+}  // namespace hooke::solver

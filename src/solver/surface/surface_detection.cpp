@@ -1,0 +1,349 @@
+#include "solver/surface/surface_detection.h"
+
+#include "base/assert.h"
+#include "solver/surface/surface_kernels.h"
+#include "solver/surface/surface_tuning.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+constexpr double kMovingShare = 0.95;  ///< Share of the points that decides how long cages last.
+
+/// Takes positions at the start of the substep and velocities of now.
+void place_vertices(const state::Tables& t, SurfaceContacts& c, SurfaceGroup& group) {
+  group.origin = t.objects[c.surfaces.meshes[group.meshes.front()].object].origin;
+  for (const std::uint32_t i : group.meshes)
+    c.shift[i] = vector_cast<Real>(t.objects[c.surfaces.meshes[i].object].origin - group.origin);
+  Real largest = Real(0);
+  group.held = false;
+  for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
+    const Vec3 x = c.start[vertex].x + c.shift[mesh];
+    c.found_at[vertex] = c.position[vertex] = {x, t.objects[c.surfaces.meshes[mesh].object].surface_radius};
+    c.velocity[vertex] = t.particles.velocity[c.surfaces.particle[vertex]];
+    largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+    group.held = group.held || c.velocity[vertex].inverse_mass == Real(0);
+  });
+  group.reserve = kSurfaceReserve * (largest + Real(0.05));
+  group.displacement = {};
+}
+
+/// Displacement of the faster points in a substep, over the length of their edges.
+Real displacement_of_fast_points(const state::Tables& t, const SurfaceContacts& c, Vec3 mean, Real h,
+                                 SurfaceGroup& group) {
+  group.speeds.clear();
+  for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
+    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface_edge;
+    const Real displacement = length(c.velocity[vertex].v - mean) * h / edge;
+    group.speeds.push_back(is_finite(c.velocity[vertex].v) ? displacement : Real(0));
+  });
+  const auto at = static_cast<std::ptrdiff_t>(kMovingShare * static_cast<double>(group.speeds.size() - 1));
+  std::nth_element(group.speeds.begin(), group.speeds.begin() + at, group.speeds.end());
+  return group.speeds[static_cast<std::size_t>(at)];
+}
+
+void make_cages(const state::Tables& t, Real h, SurfaceContacts& c, SurfaceGroup& group) {
+  const Vec3 mean = mean_velocity(c, group, [&](std::uint32_t vertex) { return c.velocity[vertex].v; });
+  const Real displacement = displacement_of_fast_points(t, c, mean, h, group);
+  const auto most = static_cast<Real>(c.substeps_left);
+  const Real lasts =
+      displacement * most > kCageDisplacement ? std::floor(kCageDisplacement / displacement) : most;
+  group.substeps_left = std::max(1, static_cast<int>(lasts));
+  const Real time = h * static_cast<Real>(group.substeps_left);
+  const Real moving =
+      std::min(Real(1), displacement * static_cast<Real>(group.substeps_left) / kCalmDisplacement);
+  const Real share = kCalmRoom + (kRoom - kCalmRoom) * moving;
+  for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
+    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface_edge;
+    const Vec3 drift = time * (c.velocity[vertex].v - mean);
+    Real room = share * edge;
+    if (group.substeps_left > 1) room = std::min(room + kCageDisplacement * length(drift), kMostRoom * edge);
+    c.cage[vertex] = {drift, room};
+  });
+}
+
+SurfaceBox box_of_cage(const SurfaceContacts& c, std::uint32_t vertex, Real reach) {
+  const Vec3 x = c.position[vertex].x;
+  const SurfaceCage& cage = c.cage[vertex];
+  const Real room = cage.room + reach;
+  SurfaceBox box;
+  const auto set = [&](std::size_t k, Real at, Real drift) {
+    box.lower[k] = at + std::min(drift, Real(0)) - room;
+    box.negated_upper[k] = -(at + std::max(drift, Real(0)) + room);
+  };
+  set(0, x.x, cage.drift.x);
+  set(1, x.y, cage.drift.y);
+  set(2, x.z, cage.drift.z);
+  return box;
+}
+
+SurfaceBox join(const SurfaceBox& a, const SurfaceBox& b) {
+  SurfaceBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lower[k] = std::min(a.lower[k], b.lower[k]);
+    box.negated_upper[k] = std::min(a.negated_upper[k], b.negated_upper[k]);
+  }
+  return box;
+}
+
+SurfaceBox shrink(SurfaceBox box, Real by) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lower[k] += by;
+    box.negated_upper[k] += by;
+  }
+  return box;
+}
+
+/// Makes the boxes of all features and nodes; `by_vertex` is scratch memory.
+void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Real edge_reach,
+               SurfaceBoxes& boxes) {
+  boxes.by_vertex.resize(mesh.vertex_count);
+  for (std::uint32_t i = 0; i < mesh.vertex_count; ++i)
+    boxes.by_vertex[i] = box_of_cage(c, mesh.first_vertex + i, reach);
+  const auto at = [&](std::uint32_t vertex) -> const SurfaceBox& {
+    return boxes.by_vertex[vertex - mesh.first_vertex];
+  };
+  boxes.vertices.resize(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) boxes.vertices[i] = at(mesh.vertices[i]);
+  boxes.edges.resize(mesh.edges.size());
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
+    boxes.edges[i] =
+        shrink(join(at(mesh.edges[i].vertex[0]), at(mesh.edges[i].vertex[1])), reach - edge_reach);
+  boxes.nodes.resize(mesh.nodes.size());
+  boxes.children.resize(mesh.nodes.size());
+  boxes.triangles.resize(mesh.cells.size());
+  boxes.edge_groups.resize(mesh.edge_groups);
+  for (std::size_t i = mesh.nodes.size(); i-- > 0;) {
+    const SurfaceNode& node = mesh.nodes[i];
+    if (node.left != SurfaceNode::kLeaf) {
+      for (std::size_t lane = 0; lane < 4; ++lane)
+        boxes.children[i].set(lane, boxes.nodes[lane % 2 == 0 ? node.left : node.right]);
+      boxes.nodes[i] = join(boxes.nodes[node.left], boxes.nodes[node.right]);
+      continue;
+    }
+    const SurfaceCell& cell = mesh.cells[node.right];
+    SurfaceBox box = SurfaceBox4::none();
+    for (std::uint32_t lane = 0; lane < 4; ++lane) {
+      const std::uint32_t triangle = cell.first_triangle + lane;
+      SurfaceBox one = SurfaceBox4::none();
+      if (triangle < cell.end_triangle) {
+        const auto& [p, q, r] = mesh.triangles[triangle].vertex;
+        one = join(join(at(p), at(q)), at(r));
+        box = lane == 0 ? one : join(box, one);
+      }
+      boxes.triangles[node.right].set(lane, one);
+    }
+    boxes.nodes[i] = box;
+    const std::uint32_t count = (cell.end_edge - cell.first_edge + 3) / 4 * 4;
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      const std::uint32_t edge = cell.first_edge + lane;
+      boxes.edge_groups[cell.first_group + lane / 4].set(
+          lane % 4, edge < cell.end_edge ? boxes.edges[edge] : SurfaceBox4::none());
+    }
+  }
+}
+
+/// Makes rows and pairs of what was found.
+class RowMaker {
+ public:
+  RowMaker(const state::Tables& tables, SurfaceContacts& contacts, SurfaceGroup& group)
+      : t_(tables), c_(contacts), group_(group) {}
+
+  /// Distance that two surfaces keep, or one from itself.
+  [[nodiscard]] Real distance_of(std::uint32_t mesh_a, std::uint32_t mesh_b) const {
+    if (mesh_a == mesh_b) return object(mesh_a).self_distance;
+    return object(mesh_a).surface_radius + object(mesh_b).surface_radius;
+  }
+
+  void take(const SurfaceFound& found) {
+    if ((found.flags & SurfaceFound::kUncertain) != 0 && !separate(found)) return;
+    if ((found.flags & SurfaceFound::kReachable) != 0) add_pair(found);
+    add_row(found);
+  }
+
+ private:
+  [[nodiscard]] const state::Deformable& object(std::uint32_t mesh) const {
+    return t_.objects[c_.surfaces.meshes[mesh].object];
+  }
+  [[nodiscard]] Vec3 x(std::uint32_t vertex) const { return c_.position[vertex].x; }
+
+  [[nodiscard]] Real distance_of(const SurfaceFound& found) const {
+    return distance_of(found.first_mesh, found.second_mesh);
+  }
+
+  /// Handles a pair whose normal does not separate it. What is apart all the same gets cages so small that it
+  /// cannot meet. What touches or crosses has no cage: a row pushes it apart, by the side the surfaces
+  /// face. Returns whether the pair is to be treated as others.
+  bool separate(const SurfaceFound& found) {
+    DVec3 between;
+    for (std::size_t k = 0; k < 4; ++k)
+      between += static_cast<double>(found.weight[k]) * vector_cast<double>(x(found.vertex[k]));
+    const auto distance = static_cast<Real>(length(between));
+    if (distance > Real(4) * group_.reserve) {
+      const Real room = Real(0.4) * distance - group_.reserve;
+      for (const std::uint32_t vertex : found.vertex) {
+        SurfaceCage& cage = c_.cage[vertex];
+        cage = {{}, std::min(cage.room, room)};
+      }
+      return false;
+    }
+    ++group_.uncertain;
+    if (found.is_edges) return false;
+    const auto& [p, a, b, q] = found.vertex;
+    const Vec3 face = cross(x(b) - x(a), x(q) - x(a));
+    const Real size = length(face);
+    if (!(size > Real(0))) return false;
+    SurfaceFound turned = found;
+    const bool outward =
+        object(found.second_mesh).kind == PointRef::Kind::kSolid || found.first_mesh >= found.second_mesh;
+    turned.normal = ((outward ? Real(1) : Real(-1)) / size) * face;
+    add_row(turned);
+    return false;
+  }
+
+  void add_pair(const SurfaceFound& found) {
+    auto& blocks = found.is_edges ? group_.edge_pairs : group_.face_pairs;
+    if (blocks.empty() || blocks.back().count == kLanes) blocks.emplace_back();
+    SurfacePairBlock& block = blocks.back();
+    // Lanes that are not used yet repeat the pair, so that they can be measured.
+    for (int lane = block.count; lane < kLanes; ++lane) {
+      for (std::size_t k = 0; k < 4; ++k) block.record[k][lane] = 4 * found.vertex[k];
+      block.normal[0][lane] = found.normal.x;
+      block.normal[1][lane] = found.normal.y;
+      block.normal[2][lane] = found.normal.z;
+      block.gap[lane] = block.now[lane] = found.gap;
+      block.most[lane] = kKeptShare * distance_of(found);
+    }
+    ++block.count;
+  }
+
+  /// Whether the normal points away from everything that begins at the vertex.
+  [[nodiscard]] bool is_in_cone(std::uint32_t mesh, std::uint32_t vertex, Vec3 normal) const {
+    for (const std::uint32_t neighbor : c_.surfaces.meshes[mesh].neighbors_of(vertex)) {
+      const Vec3 along = x(neighbor) - x(vertex);
+      if (dot(normal, along) > kWedgeCosine * length(along)) return false;
+    }
+    return true;
+  }
+
+  /// Whether the normal points away from both triangles at the edge.
+  [[nodiscard]] bool is_in_wedge(const SurfaceEdge& edge, Vec3 normal) const {
+    const Vec3 start = x(edge.vertex[0]);
+    const Vec3 along = x(edge.vertex[1]) - start;
+    const Real squared = length_squared(along);
+    for (const std::uint32_t opposite : edge.opposite) {
+      if (opposite == SurfaceEdge::kNone) continue;
+      Vec3 across = x(opposite) - start;
+      if (squared > Real(0)) across = across - (dot(across, along) / squared) * along;
+      if (dot(normal, across) > kWedgeCosine * length(across)) return false;
+    }
+    return true;
+  }
+
+  /// The share of the thickness that the pair keeps; 0 if other features speak for it.
+  [[nodiscard]] Real share_of_edges(const SurfaceFound& found) const {
+    for (const Real weight : found.weight) {
+      if (weight == Real(0)) return Real(0);
+    }
+    const SurfaceEdge& first = c_.surfaces.meshes[found.first_mesh].edges[found.first_feature];
+    const SurfaceEdge& second = c_.surfaces.meshes[found.second_mesh].edges[found.second_feature];
+    return is_in_wedge(first, -found.normal) && is_in_wedge(second, found.normal) ? kEdgeShare : Real(0);
+  }
+
+  [[nodiscard]] Real share_of_face(const SurfaceFound& found) const {
+    const SurfaceMesh& mesh = c_.surfaces.meshes[found.second_mesh];
+    const SurfaceTriangle& triangle = mesh.triangles[found.second_feature];
+    std::size_t zeros = 0;
+    std::size_t zero = 0;
+    std::size_t corner = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool is_zero = found.weight[k + 1] == Real(0);
+      zeros += is_zero ? 1 : 0;
+      if (is_zero) zero = k;
+      if (!is_zero) corner = k;
+    }
+    if (zeros == 0) return Real(1);
+    if (!is_in_cone(found.first_mesh, found.vertex[0], -found.normal)) return Real(0);
+    if (zeros == 1) {
+      const std::size_t k = (zero + 1) % 3;
+      if ((triangle.owns_edge >> k & 1U) == 0) return Real(0);
+      return is_in_wedge(mesh.edges[triangle.edge[k]], found.normal) ? kRidgeShare : Real(0);
+    }
+    const std::uint32_t tip = triangle.vertex[corner];
+    if ((triangle.owns_vertex >> corner & 1U) == 0 || found.vertex[0] > tip) return Real(0);
+    return is_in_cone(found.second_mesh, tip, found.normal) ? kRidgeShare : Real(0);
+  }
+
+  void add_row(const SurfaceFound& found) {
+    const Real share = found.is_edges ? share_of_edges(found) : share_of_face(found);
+    if (!(share > Real(0))) return;
+    SurfaceRow& row = group_.rows.emplace_back();
+    row.vertex = found.vertex;
+    row.weight = found.weight;
+    row.normal = found.normal;
+    row.distance = share * distance_of(found);
+    row.friction = std::sqrt(object(found.first_mesh).friction * object(found.second_mesh).friction);
+  }
+
+  const state::Tables& t_;
+  SurfaceContacts& c_;
+  SurfaceGroup& group_;
+};
+
+}  // namespace
+
+bool clip_to_cage(const SurfaceCage& cage, Vec3& displacement) {
+  const Real squared = length_squared(cage.drift);
+  const Real share =
+      squared > Real(0) ? std::clamp(dot(displacement, cage.drift) / squared, Real(0), Real(1)) : Real(0);
+  const Vec3 on_line = share * cage.drift;
+  const Vec3 off = displacement - on_line;
+  const Real distance = length(off);
+  if (!(distance > cage.room)) return false;
+  // A little less than the room, so that rounding does not lead out of it.
+  displacement = on_line + (Real(0.999) * cage.room / distance) * off;
+  return true;
+}
+
+void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& contacts,
+                         SurfaceGroup& group) {
+  place_vertices(tables, contacts, group);
+  make_cages(tables, h, contacts, group);
+  group.rows.clear();
+  group.face_pairs.clear();
+  group.edge_pairs.clear();
+  group.known = true;
+  ++group.searches;
+  const auto radius = [&](std::uint32_t mesh) {
+    return tables.objects[contacts.surfaces.meshes[mesh].object].surface_radius;
+  };
+  RowMaker maker(tables, contacts, group);
+  for (const std::uint32_t i : group.meshes) {
+    const Real reach = (Real(1) + kSurfaceMargin) * radius(i) + Real(2) * group.reserve;
+    const Real edge_reach = (kEdgeShare + kEdgeMargin) * radius(i) + Real(2) * group.reserve;
+    fit_boxes(contacts, contacts.surfaces.meshes[i], reach, edge_reach, contacts.boxes[i]);
+  }
+  group.found.clear();
+  for (const auto& [a, b] : group.pairs) {
+    const Real distance = maker.distance_of(a, b);
+    wide::search_surfaces({.mesh_a = &contacts.surfaces.meshes[a],
+                           .mesh_b = &contacts.surfaces.meshes[b],
+                           .boxes_a = &contacts.boxes[a],
+                           .boxes_b = &contacts.boxes[b],
+                           .number_a = a,
+                           .number_b = b,
+                           .position = contacts.position.data(),
+                           .cage = contacts.cage.data(),
+                           .joined = contacts.surfaces.joined.data(),
+                           .face_near = (Real(1) + kSurfaceMargin) * distance,
+                           .edge_near = (kEdgeShare + kEdgeMargin) * distance,
+                           .reserve = group.reserve},
+                          group.found);
+  }
+  for (const SurfaceFound& found : group.found) maker.take(found);
+}
+
+}  // namespace hooke::solver

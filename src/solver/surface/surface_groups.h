@@ -1,0 +1,99 @@
+#pragma once
+
+#include "base/disjoint_sets.h"
+#include "solver/surface/surface_mesh.h"
+#include "solver/surface/surface_records.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace hooke::solver {
+
+/// Keeps a vertex and a triangle apart, or two edges. Their points sum weight x differ by the gap.
+struct SurfaceRow {
+  std::array<std::uint32_t, 4> vertex = {};
+  std::array<Real, 4> weight = {};
+  Vec3 normal = {};            ///< Unit vector from the second side to the first.
+  Real distance = Real(0);     ///< Distance that they keep [m].
+  Real friction = Real(0);     ///< Friction coefficient of the pair.
+  Real least_speed = Real(0);  ///< Least speed along the normal in this substep [m/s].
+  Real pushed = Real(0);       ///< Impulse along the normal in this substep [N s].
+};
+
+/// Surfaces that may touch each other, one or more, with what was found between them. Groups share no
+/// particle, and what one does has no influence on another.
+struct SurfaceGroup {
+  std::vector<std::uint32_t> meshes;                ///< In ascending order.
+  std::vector<std::array<std::uint32_t, 2>> pairs;  ///< Meshes that may touch; twice the same for one that
+                                                    ///< touches itself.
+  bool known = false;                               ///< What stands below was found in this step.
+  bool held = false;           ///< Some vertex is pinned: the group has no motion of its own.
+  DVec3 origin = {};           ///< Origin of the positions of its vertices [m].
+  Real reserve = Real(0);      ///< Rounding of these positions [m].
+  DVec3 displacement = {};     ///< Motion of the group since contacts were found [m].
+  Vec3 displacement_now = {};  ///< Its motion in this substep [m].
+  int substeps_left = 0;       ///< Particle substeps for which cages were made.
+  std::vector<SurfaceRow> rows;
+  std::vector<SurfacePairBlock> face_pairs, edge_pairs;
+  std::vector<SurfaceFound> found;  ///< Scratch memory.
+  std::vector<std::uint32_t> hot;   ///< Scratch memory: pairs that are corrected.
+  std::vector<Real> speeds;         ///< Scratch memory.
+  std::uint32_t searches = 0;       ///< How often contacts were found in this step.
+  std::uint32_t held_back = 0;      ///< Vertices that were held back in this step, in all substeps.
+  std::uint32_t clipped = 0;        ///< Vertices that were clipped to their cages.
+  std::uint32_t corrections = 0;    ///< Corrections of pairs.
+  std::uint32_t uncertain = 0;      ///< Pairs that touched or crossed when they were found.
+};
+
+/// Where a surface is expected to stay until the step ends.
+struct SurfaceBounds {
+  DVec3 lower = {}, upper = {};  ///< [m]
+};
+
+/// All contacts of surfaces. Nothing of it lives from step to step but memory.
+struct SurfaceContacts {
+  SurfaceMeshes surfaces;
+  bool active = false;                ///< Some surface may touch another, or itself.
+  std::vector<SurfaceBounds> bounds;  ///< By mesh.
+  std::vector<SurfaceBoxes> boxes;    ///< By mesh.
+  std::vector<Vec3> shift;            ///< By mesh: from its object's origin to that of its group [m].
+  std::vector<state::PositionRecord>
+      start;  ///< By vertex: where it began the substep, from its object's origin.
+  std::vector<state::PositionRecord> position;  ///< By vertex: where it is, from its group's origin.
+  std::vector<state::PositionRecord>
+      found_at;  ///< By vertex: where it was when contacts were found, the same.
+  std::vector<state::VelocityRecord> velocity;  ///< By vertex.
+  std::vector<SurfaceCage> cage;                ///< By vertex.
+  std::vector<std::uint8_t> stays;              ///< By vertex: it is held back in this substep.
+  std::vector<SurfaceGroup> groups;  ///< The first `live_groups`, in the order of their first meshes.
+  std::size_t live_groups = 0;
+  std::vector<SurfaceGroup> next_groups;                 ///< Scratch memory.
+  std::vector<std::array<std::uint32_t, 2>> next_pairs;  ///< Scratch memory.
+  std::vector<std::uint32_t> order;                      ///< Scratch memory.
+  base::DisjointSets sets;                               ///< Scratch memory: meshes that share a group.
+  int substeps_left = 0;                                 ///< Particle substeps that the step still has.
+  std::vector<std::uint8_t> refreshed;  ///< By object: contacts were found anew in this substep.
+  bool regroup = false;                 ///< All bounds are to be made anew.
+
+  /// Calls `visit` with each group.
+  template <class Visit>
+  void for_groups(Visit visit) {
+    for (std::size_t i = 0; i < live_groups; ++i) visit(groups[i]);
+  }
+};
+
+/// Calls `visit(vertex, mesh)` with each vertex of the group.
+template <class Visit>
+void for_vertices(const SurfaceContacts& contacts, const SurfaceGroup& group, Visit visit) {
+  for (const std::uint32_t i : group.meshes) {
+    const SurfaceMesh& mesh = contacts.surfaces.meshes[i];
+    for (std::uint32_t vertex = mesh.first_vertex; vertex < mesh.end_vertex(); ++vertex) visit(vertex, i);
+  }
+}
+
+/// Says anew which surfaces may meet within the rest of the step, where they leave what was expected or
+/// a step begins. Groups that stay as they are keep what was found.
+void refresh_surface_groups(const state::Tables& tables, Real h, SurfaceContacts& contacts);
+
+}  // namespace hooke::solver

@@ -1,0 +1,306 @@
+#include "solver/surface/surface_mesh.h"
+
+#include "base/assert.h"
+#include "base/disjoint_sets.h"
+#include "geometry/solid/tetrahedral_mesh.h"
+#include "geometry/triangle_mesh.h"
+#include "solver/surface/surface_tree.h"
+
+#include <algorithm>
+
+namespace hooke::solver {
+
+namespace {
+
+using geometry::kNone;
+using geometry::MeshTopology;
+using geometry::Triangle;
+
+/// The triangles of an object's surface, as rows of particles.
+std::vector<Triangle> triangles_of(const state::Tables& t, const state::Deformable& object) {
+  std::vector<Triangle> found;
+  for (std::uint32_t i = object.triangles.first; i < object.triangles.end(); ++i) {
+    const auto [a, b, c] = t.triangles.corners[i];
+    found.push_back({a, b, c});
+  }
+  if (object.kind != PointRef::Kind::kSolid) return found;
+  if (object.tetrahedra.count > 0) {
+    std::vector<geometry::Tetrahedron> tetrahedra;
+    for (std::uint32_t i = object.tetrahedra.first; i < object.tetrahedra.end(); ++i) {
+      const auto [a, b, c, d] = t.tetrahedra.corners[i];
+      tetrahedra.push_back({a, b, c, d});
+    }
+    return geometry::surface_of(tetrahedra);
+  }
+  if (!object.skin) return found;
+  for (const Triangle& triangle : object.skin->triangles) {
+    Triangle rows = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t point = object.skin->vertices[triangle[k]].points[0];
+      rows[k] = object.particles.first + t.particles.row_of[object.particles.first + point];
+    }
+    found.push_back(rows);
+  }
+  return found;
+}
+
+/// Pairs triangles that share an edge.
+class Pairing {
+ public:
+  Pairing(std::span<const Triangle> triangles, const MeshTopology& topology, std::span<const Vec3> rest)
+      : triangles_(triangles), topology_(topology), rest_(rest), taken_(triangles.size(), 0) {}
+
+  /// Returns pairs, and single triangles with kNone. First come pairs across the longest edge of both, then
+  /// each triangle takes the neighbor that has the fewest free neighbors.
+  std::vector<std::array<std::uint32_t, 2>> make() {
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+      taken_[a] = 1;
+      if (b != kNone) taken_[b] = 1;
+      pairs.push_back({a, b});
+    };
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      if (taken_[i] != 0) continue;
+      const std::size_t k = longest_edge(i);
+      const std::uint32_t other = other_side(i, k);
+      if (other != kNone &&
+          topology_.triangle_edges[other][longest_edge(other)] == topology_.triangle_edges[i][k])
+        join(i, other);
+    }
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      if (taken_[i] == 0) join(i, most_lonely_neighbor(i));
+    }
+    return pairs;
+  }
+
+ private:
+  [[nodiscard]] std::size_t longest_edge(std::uint32_t triangle) const {
+    std::size_t longest = 0;
+    Real most = Real(-1);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Real squared =
+          length_squared(rest_[triangles_[triangle][(k + 1) % 3]] - rest_[triangles_[triangle][k]]);
+      if (squared > most) longest = k;
+      most = std::max(most, squared);
+    }
+    return longest;
+  }
+
+  /// The free triangle across an edge, or kNone.
+  [[nodiscard]] std::uint32_t other_side(std::uint32_t triangle, std::size_t k) const {
+    const geometry::EdgeSides& sides = topology_.edge_sides[topology_.triangle_edges[triangle][k]];
+    const std::uint32_t other = sides.triangles[0] == triangle ? sides.triangles[1] : sides.triangles[0];
+    return other != kNone && taken_[other] == 0 ? other : kNone;
+  }
+
+  [[nodiscard]] std::uint32_t most_lonely_neighbor(std::uint32_t triangle) const {
+    std::uint32_t best = kNone;
+    int fewest = 4;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t other = other_side(triangle, k);
+      if (other == kNone || other == triangle) continue;
+      int count = 0;
+      for (std::size_t side = 0; side < 3; ++side) count += other_side(other, side) != kNone ? 1 : 0;
+      if (count >= fewest) continue;
+      best = other;
+      fewest = count;
+    }
+    return best;
+  }
+
+  std::span<const Triangle> triangles_;
+  const MeshTopology& topology_;
+  std::span<const Vec3> rest_;
+  std::vector<std::uint8_t> taken_;
+};
+
+/// Makes one surface out of triangles whose corners count from 0.
+class MeshBuilder {
+ public:
+  /// `rest` holds the position of each vertex at rest.
+  MeshBuilder(std::span<const Triangle> triangles, std::span<const Vec3> rest)
+      : triangles_(triangles),
+        topology_(geometry::compute_topology(rest.size(), triangles)),
+        pairs_(Pairing(triangles, topology_, rest).make()),
+        cell_of_(triangles.size()),
+        rest_(rest),
+        vertex_count_(static_cast<std::uint32_t>(rest.size())) {
+    for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
+      for (const std::uint32_t triangle : pairs_[i]) {
+        if (triangle != kNone) cell_of_[triangle] = i;
+      }
+    }
+  }
+
+  void build(SurfaceMesh& mesh) {
+    mesh.vertex_count = vertex_count_;
+    add_features(mesh);
+    add_neighbors(mesh);
+    std::vector<Vec3> centers;
+    for (const SurfaceCell& cell : mesh.cells) {
+      const auto& [a, b, c] = mesh.triangles[cell.first_triangle].vertex;
+      centers.push_back(rest_[a - mesh.first_vertex] + rest_[b - mesh.first_vertex] +
+                        rest_[c - mesh.first_vertex]);
+    }
+    mesh.nodes = build_surface_tree(centers);
+  }
+
+ private:
+  /// Gives each of `count` parts to the cell of its triangles that has the fewest so far.
+  template <class TrianglesAt>
+  std::vector<std::vector<std::uint32_t>> share_out(std::size_t count, TrianglesAt triangles_at) {
+    std::vector<std::vector<std::uint32_t>> owned(pairs_.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      std::uint32_t best = kNone;
+      for (const std::uint32_t triangle : triangles_at(i)) {
+        const std::uint32_t cell = triangle == kNone ? kNone : cell_of_[triangle];
+        if (cell == kNone) continue;
+        if (best == kNone || owned[cell].size() < owned[best].size()) best = cell;
+      }
+      if (best != kNone) owned[best].push_back(i);
+    }
+    return owned;
+  }
+
+  void add_features(SurfaceMesh& mesh) {
+    const auto vertices =
+        share_out(vertex_count_, [&](std::uint32_t vertex) { return topology_.triangles_at(vertex); });
+    const auto edges = share_out(topology_.edges.size(), [&](std::uint32_t edge) {
+      return std::span<const std::uint32_t>(topology_.edge_sides[edge].triangles);
+    });
+    std::vector<std::uint32_t> edge_row(topology_.edges.size(), 0);
+    const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+    for (std::uint32_t cell = 0; cell < pairs_.size(); ++cell) {
+      SurfaceCell rows = {size(mesh.vertices), 0, size(mesh.edges), 0, size(mesh.triangles), 0};
+      for (const std::uint32_t vertex : vertices[cell]) mesh.vertices.push_back(mesh.first_vertex + vertex);
+      for (const std::uint32_t edge : edges[cell]) {
+        edge_row[edge] = size(mesh.edges);
+        mesh.edges.push_back(edge_at(edge, mesh.first_vertex));
+      }
+      for (const std::uint32_t triangle : pairs_[cell]) {
+        if (triangle != kNone) mesh.triangles.push_back(triangle_at(triangle, mesh.first_vertex));
+      }
+      rows.end_vertex = size(mesh.vertices);
+      rows.first_group = mesh.edge_groups;
+      mesh.edge_groups += (size(mesh.edges) - rows.first_edge + 3) / 4;
+      rows.end_edge = size(mesh.edges);
+      rows.end_triangle = size(mesh.triangles);
+      mesh.cells.push_back(rows);
+    }
+    for (SurfaceTriangle& triangle : mesh.triangles) {
+      for (std::uint32_t& edge : triangle.edge) edge = edge_row[edge];
+    }
+  }
+
+  [[nodiscard]] SurfaceEdge edge_at(std::uint32_t edge, std::uint32_t first) const {
+    SurfaceEdge result;
+    for (std::size_t k = 0; k < 2; ++k) {
+      result.vertex[k] = first + topology_.edges[edge][k];
+      const std::uint32_t opposite = topology_.edge_sides[edge].opposite[k];
+      result.opposite[k] = opposite == kNone ? SurfaceEdge::kNone : first + opposite;
+    }
+    return result;
+  }
+
+  [[nodiscard]] SurfaceTriangle triangle_at(std::uint32_t triangle, std::uint32_t first) const {
+    SurfaceTriangle result;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = triangles_[triangle][k];
+      result.vertex[k] = first + vertex;
+      result.edge[k] = topology_.triangle_edges[triangle][k];
+      const auto bit = static_cast<std::uint8_t>(1U << k);
+      if (topology_.edge_sides[result.edge[k]].triangles[0] == triangle) result.owns_edge |= bit;
+      if (topology_.triangles_at(vertex).front() == triangle) result.owns_vertex |= bit;
+    }
+    return result;
+  }
+
+  void add_neighbors(SurfaceMesh& mesh) const {
+    std::vector<std::vector<std::uint32_t>> lists(vertex_count_);
+    for (const auto& [a, b] : topology_.edges) {
+      lists[a].push_back(mesh.first_vertex + b);
+      lists[b].push_back(mesh.first_vertex + a);
+    }
+    for (const std::vector<std::uint32_t>& list : lists) {
+      mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
+      mesh.neighbors.insert(mesh.neighbors.end(), list.begin(), list.end());
+    }
+    mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
+  }
+
+  std::span<const Triangle> triangles_;
+  MeshTopology topology_;
+  std::vector<std::array<std::uint32_t, 2>> pairs_;
+  std::vector<std::uint32_t> cell_of_;  ///< By triangle.
+  std::span<const Vec3> rest_;
+  std::uint32_t vertex_count_;
+};
+
+/// Appends the surface of an object; `vertex_of` is scratch memory by particle, full of kNone.
+void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::uint32_t>& vertex_of,
+                    SurfaceMeshes& surfaces) {
+  std::vector<Triangle> triangles = triangles_of(t, t.objects[row]);
+  if (triangles.empty() || !t.objects[row].rest_points) return;
+  SurfaceMesh& mesh = surfaces.meshes.emplace_back();
+  mesh.object = row;
+  mesh.first_vertex = static_cast<std::uint32_t>(surfaces.particle.size());
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t particle : triangle) vertex_of[particle] = 0;
+  }
+  const state::Rows& rows = t.objects[row].particles;
+  for (std::uint32_t particle = rows.first; particle < rows.end(); ++particle) {
+    if (vertex_of[particle] == kNone) continue;
+    vertex_of[particle] = static_cast<std::uint32_t>(surfaces.particle.size()) - mesh.first_vertex;
+    surfaces.particle.push_back(particle);
+    surfaces.mesh_of.push_back(static_cast<std::uint32_t>(surfaces.meshes.size() - 1));
+  }
+  for (Triangle& triangle : triangles) {
+    for (std::uint32_t& corner : triangle) corner = vertex_of[corner];
+  }
+  const std::uint32_t count = static_cast<std::uint32_t>(surfaces.particle.size()) - mesh.first_vertex;
+  std::vector<Vec3> rest;
+  for (std::uint32_t i = mesh.first_vertex; i < mesh.first_vertex + count; ++i)
+    rest.push_back((*t.objects[row].rest_points)[surfaces.particle[i] - rows.first]);
+  MeshBuilder(triangles, rest).build(mesh);
+}
+
+/// Gives the vertices at both ends of each hook that holds points together one number.
+void join_hooked(const state::Tables& t, std::span<const std::uint32_t> vertex_of, SurfaceMeshes& surfaces) {
+  base::DisjointSets sets(surfaces.particle.size());
+  for (const state::Hook& hook : t.hooks) {
+    if (hook.broken || hook.kind == HookKind::kDistance || !hook.a.is_point() || !hook.b.is_point()) continue;
+    std::uint32_t first = kNone;
+    for (const state::HookPlace* place : {&hook.a, &hook.b}) {
+      for (std::uint32_t k = 0; k < place->particle_count; ++k) {
+        const std::uint32_t vertex = vertex_of[place->particle[k]];
+        if (vertex == kNone) continue;
+        if (first == kNone) first = vertex;
+        sets.merge(first, vertex);
+      }
+    }
+  }
+  surfaces.joined.resize(surfaces.particle.size());
+  for (std::uint32_t i = 0; i < surfaces.joined.size(); ++i) surfaces.joined[i] = sets.root(i);
+}
+
+}  // namespace
+
+bool refresh_surfaces(const state::Tables& tables, SurfaceMeshes& surfaces) {
+  const bool stale = surfaces.revision != tables.revision;
+  if (!stale && surfaces.hook_revision == tables.hook_revision) return false;
+  surfaces.revision = tables.revision;
+  surfaces.hook_revision = tables.hook_revision;
+  std::vector<std::uint32_t> vertex_of(tables.particles.position.size(), kNone);
+  if (stale) {
+    surfaces.meshes.clear();
+    surfaces.particle.clear();
+    surfaces.mesh_of.clear();
+    for (std::uint32_t row = 0; row < tables.objects.size(); ++row)
+      append_surface(tables, row, vertex_of, surfaces);
+  }
+  for (std::uint32_t i = 0; i < surfaces.particle.size(); ++i) vertex_of[surfaces.particle[i]] = i;
+  join_hooked(tables, vertex_of, surfaces);
+  return stale;
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "state/tables.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// \file
+/// The surfaces of deformables, as contacts between them see them: the triangles of a cloth and the outer
+/// faces of a solid, with their edges and vertices. All of it follows from what rows join and from no
+/// position, so that a World that was restored makes the same again, in the same order.
+
+namespace hooke::solver {
+
+/// Up to two triangles that share an edge, with the vertices and edges that they own. Each vertex and each
+/// edge is owned by one cell. Rows [first, end) of the features of a mesh.
+struct SurfaceCell {
+  std::uint32_t first_vertex = 0, end_vertex = 0;
+  std::uint32_t first_edge = 0, end_edge = 0;
+  std::uint32_t first_triangle = 0, end_triangle = 0;
+  std::uint32_t first_group = 0;  ///< The first of its groups of up to four edges.
+};
+
+/// A node of the tree over cells. Children stand after their parent.
+struct SurfaceNode {
+  static constexpr std::uint32_t kLeaf = 0xFFFFFFFF;
+
+  std::uint32_t left = kLeaf;  ///< Index of the first child; kLeaf for a leaf.
+  std::uint32_t right = 0;     ///< Index of the second child; for a leaf, the cell.
+};
+
+/// A triangle with its edges. Flags say which of its parts it speaks for, so that an edge or a corner of
+/// several triangles touches once.
+struct SurfaceTriangle {
+  std::array<std::uint32_t, 3> vertex = {};
+  std::array<std::uint32_t, 3> edge = {};  ///< Edge k joins corners k and k + 1.
+  std::uint8_t owns_edge = 0;              ///< Bit k for edge k.
+  std::uint8_t owns_vertex = 0;            ///< Bit k for corner k.
+};
+
+struct SurfaceEdge {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  std::array<std::uint32_t, 2> vertex = {};
+  std::array<std::uint32_t, 2> opposite = {kNone, kNone};  ///< Third corners of the triangles at it.
+};
+
+/// The surface of one object. Vertices are numbered through all surfaces, other parts within their surface.
+struct SurfaceMesh {
+  std::uint32_t object = 0;  ///< Row of the deformable.
+  std::uint32_t first_vertex = 0;
+  std::uint32_t vertex_count = 0;
+  std::vector<std::uint32_t> vertices;  ///< In the order of cells.
+  std::vector<SurfaceEdge> edges;       ///< In the order of cells.
+  std::vector<SurfaceTriangle> triangles;
+  std::vector<SurfaceCell> cells;
+  std::uint32_t edge_groups = 0;   ///< Number of groups of edges of all cells.
+  std::vector<SurfaceNode> nodes;  ///< The first one is the root.
+  /// Vertices that share an edge with each vertex: neighbors[neighbor_begin[i] .. neighbor_begin[i + 1]), i
+  /// counted from first_vertex.
+  std::vector<std::uint32_t> neighbor_begin;
+  std::vector<std::uint32_t> neighbors;
+
+  [[nodiscard]] std::uint32_t end_vertex() const { return first_vertex + vertex_count; }
+  [[nodiscard]] std::span<const std::uint32_t> neighbors_of(std::uint32_t vertex) const {
+    const std::uint32_t i = vertex - first_vertex;
+    return std::span(neighbors).subspan(neighbor_begin[i], neighbor_begin[i + 1] - neighbor_begin[i]);
+  }
+};
+
+/// The surfaces of all deformables that have one, in the order of objects.
+struct SurfaceMeshes {
+  std::uint64_t revision = ~std::uint64_t{0};       ///< Revision of the tables that this was made from.
+  std::uint64_t hook_revision = ~std::uint64_t{0};  ///< That of hooks, from which `joined` was made.
+  std::vector<SurfaceMesh> meshes;
+  std::vector<std::uint32_t> particle;  ///< Row of each vertex.
+  std::vector<std::uint32_t> mesh_of;   ///< Surface of each vertex.
+  /// Vertices with the same number are held together by hooks, and touch each other as little as one vertex
+  /// touches itself.
+  std::vector<std::uint32_t> joined;
+};
+
+/// Makes the surfaces anew if rows have changed, and what hooks join. Returns whether it made surfaces.
+bool refresh_surfaces(const state::Tables& tables, SurfaceMeshes& surfaces);
+
+}  // namespace hooke::solver

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include <limits>
+
+/// \file
+/// Constants of the contact of deformables with each other that decide accuracy, robustness or cost.
+/// docs/tuning.md says how to try another value, docs/decisions/0040-contact-of-surfaces.md what was tried.
+
+namespace hooke::solver {
+
+// Rows of contacts.
+
+/// Share of the overlap that a substep takes back [ratio], and the largest speed at which it does [m/s].
+/// Larger: layers that lie on each other do not come to rest. Smaller: overlaps stay longer.
+inline constexpr Real kSurfaceRecovery = Real(0.3);
+inline constexpr Real kSurfaceRecoverySpeed = Real(1);
+
+/// Distance that ridges and tips keep from each other, and crossing edges, over the thickness [ratio]. At 1
+/// an edge that slides over edges bumps along, and loses speed without friction.
+inline constexpr Real kRidgeShare = Real(0.8);
+inline constexpr Real kEdgeShare = Real(0.5);
+
+/// A pair of a vertex and a face, or of edges, has a row where it comes within this share of the thickness
+/// beyond its distance [ratio].
+inline constexpr Real kSurfaceMargin = Real(0.2);
+inline constexpr Real kEdgeMargin = Real(0.1);
+
+/// Largest cosine between the normal at an edge or a corner and a face or an edge that begins there. Smaller:
+/// contacts at curved places are lost. Larger: flat places bump along.
+inline constexpr Real kWedgeCosine = Real(0.15);
+
+/// Passes over the rows in a particle substep; the last one has friction.
+inline constexpr int kSurfaceSweeps = 2;
+
+// Cages.
+
+/// Room of a point beyond its expected path, over the length of an edge [ratio]: where the group hardly
+/// moves, where it moves, and most. Smaller: corrections have no room and jam at impacts. Larger: more
+/// candidates.
+inline constexpr Real kCalmRoom = Real(0.02);
+inline constexpr Real kRoom = Real(0.1);
+inline constexpr Real kMostRoom = Real(0.2);
+
+/// Displacement in a substep, over the length of an edge, from which on a group has the room of one that
+/// moves [ratio].
+inline constexpr Real kCalmDisplacement = Real(0.1);
+
+/// A cage lasts until 95 % of the points have gone less than this share of an edge [ratio]. Larger: the
+/// number of candidates grows faster than the number of detections falls.
+inline constexpr Real kCageDisplacement = Real(0.25);
+
+/// Share of the points that may be clipped to their cages before contacts are found anew [ratio]. At 0.01 a
+/// moving front was clipped for a whole substep.
+inline constexpr double kClippedShare = 0.002;
+
+// Truncation.
+
+/// Distance that surfaces keep for certain, over the thickness [ratio], and over the distance they had before
+/// [ratio]: a jammed pair may come 10 % closer in a substep, and never reaches the rounding of positions.
+inline constexpr Real kKeptShare = Real(0.02);
+inline constexpr Real kKeptOfGap = Real(0.9);
+
+/// Rounds of corrections in a particle substep. With 4 and 8 sheets jammed that fold, with 16 nearly, with 32
+/// rarely.
+inline constexpr int kCorrectionRounds = 64;
+
+/// Pairs this much closer than they need to be, over the thickness, are looked at in each round [ratio].
+inline constexpr Real kHotShare = Real(0.1);
+
+/// Rounding of positions, over the largest coordinate: what is farther apart is apart for certain.
+inline constexpr Real kSurfaceReserve = Real(3.4) * std::numeric_limits<Real>::epsilon();
+
+}  // namespace hooke::solver
