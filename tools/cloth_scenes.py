@@ -173,6 +173,8 @@ def tent():
     for name, side in (("l", -1), ("r", 1)):
         cloths.append({
             "name": f"panel_{name}", "material": "ivory", "columns": columns, "rows": rows,
+            # Both begin on one line, where they are laced to the spar: they do not touch each other.
+            "group": -1,
             "corner": [-length / 2, ridge, side * 0.0], "column_direction": X,
             "row_direction": [0, eave[1] - ridge, side * eave[0]], "width": length, "height": panel,
             "areal_density": density, "stretch_stiffness": 3e4, "shear_stiffness": 5e3, "bend_stiffness": 6e-3, "damping": 1,

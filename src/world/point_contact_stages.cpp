@@ -10,6 +10,7 @@
 #include "solver/soft/particle_contact_solve.h"
 #include "solver/soft/pressed_points.h"
 #include "solver/surface/surface_contacts.h"
+#include "solver/surface/surface_tuning.h"
 #include "state/check_contacts.h"
 
 namespace hooke::world {
@@ -44,15 +45,21 @@ void solve_point_contacts(WorldData& world, Real h) {
   state::Tables& t = world.tables;
   collision::stop_rope_passes(*world.pool, h, world.frame.rope_contacts, t);
   // Surfaces come before bodies: what is pressed between two bodies yields to them, and is cut off last.
-  solver::solve_surfaces(*world.pool, h, world.frame.surfaces, t);
+  solver::SurfaceContacts& surfaces = world.frame.surfaces;
+  solver::solve_surfaces(*world.pool, h, false, surfaces, t);
   solver::solve_element_contacts(h, t);
   for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });
-  if (solver::refresh_surface_contacts(*world.pool, h, world.frame.surfaces, t)) {
+  const auto solve_again = [&](const std::vector<std::uint8_t>& objects) {
     for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
-      solver::solve_contacts_again(t, world.frame.surfaces.refreshed, rows, h, t.contacts, t.particles);
+      solver::solve_contacts_again(t, objects, rows, h, t.contacts, t.particles);
     });
+  };
+  if (solver::refresh_surface_contacts(*world.pool, h, surfaces, t)) solve_again(surfaces.refreshed);
+  for (int round = 2; surfaces.active && round <= solver::kSurfaceRounds; ++round) {
+    solver::solve_surfaces(*world.pool, h, true, surfaces, t);
+    solve_again(surfaces.touching);
   }
   for (solver::SoftGroup& group : world.derived.soft.groups)
     solver::settle_pressed_points(h, group.tetrahedra, t);

@@ -108,7 +108,7 @@ constexpr const char* kEverything = R"({
     {"name": "cloth", "columns": 4, "rows": 3, "corner": [0, 1, 0], "column_direction": [0, 0, 1],
      "row_direction": [1, 0, 0], "width": 2, "height": 3, "areal_density": 0.3, "thickness": 0.01,
      "stretch_stiffness": "rigid", "shear_stiffness": 100, "bend_stiffness": 0.5, "damping": 0.1,
-     "bend_damping": 0.2, "yield_angle": 0.3, "bend": "none", "extension_max": 0.1, "tethers": true,
+     "bend_damping": 0.2, "yield_angle": 0.3, "bend": "none", "extension_max": 0.1, "tethers": true, "self_contact": true,
      "pressure": 500, "drag_coefficient": 1,
      "lift_coefficient": 0, "air_friction": 0.1, "pins": [{"column": "last"}, {"row": 1}, {"topmost": 0}],
      "loads": [{"point": 1, "mass": 1}], "charge": 1, "velocity": [1, 0, 0]},
@@ -142,7 +142,8 @@ constexpr const char* kEverything = R"({
   "solids": [
     {"mesh": "inline", "visual": "fit"},
     {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
-     "damping": 0.0625, "elasticity": "shape_matching", "match_hz": 5, "match_damping_ratio": 0.5, "yield_stress": 500, "thickness": 0.25, "pins": [{"topmost": 0.5}]},
+     "damping": 0.0625, "elasticity": "shape_matching", "match_hz": 5, "match_damping_ratio": 0.5, "yield_stress": 500, "thickness": 0.25, "self_contact": true, "category": 2, "mask": 6, "group": -1,
+     "pins": [{"topmost": 0.5}]},
     {"mesh": "inline", "cell": 0.25, "position": [0, 4, 0], "total_mass": 2}],
   "timeline": [
     {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {}}}]}},

@@ -55,7 +55,9 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   contacts.velocity.assign(count, {});
   contacts.cage.assign(count, {});
   contacts.stays.assign(count, 0);
+  contacts.in_open_block.assign(count, 0);
   contacts.refreshed.assign(tables.objects.size(), 0);
+  contacts.touching.assign(tables.objects.size(), 0);
 }
 
 void begin_surface_substep(const state::Tables& tables, SurfaceContacts& contacts) {
@@ -64,12 +66,13 @@ void begin_surface_substep(const state::Tables& tables, SurfaceContacts& contact
     contacts.start[i] = tables.particles.position[contacts.surfaces.particle[i]];
 }
 
-void solve_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables) {
+void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceContacts& contacts,
+                    state::Tables& tables) {
   if (!contacts.active) return;
   for_groups(pool, contacts, [&](SurfaceGroup& group) {
     if (!group.known) return;
-    place_vertices(contacts, group);
-    solve_surface_rows(h, contacts, group, tables.particles);
+    if (!again) place_vertices(contacts, group);
+    solve_surface_rows(h, again, contacts, group, tables.particles);
   });
 }
 
@@ -78,14 +81,17 @@ bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContact
   if (!contacts.active) return false;
   refresh_surface_groups(tables, h, contacts);
   std::fill(contacts.refreshed.begin(), contacts.refreshed.end(), std::uint8_t{0});
+  std::fill(contacts.touching.begin(), contacts.touching.end(), std::uint8_t{0});
   std::atomic<bool> any = false;
   for_groups(pool, contacts, [&](SurfaceGroup& group) {
+    for (const std::uint32_t mesh : group.meshes)
+      contacts.touching[contacts.surfaces.meshes[mesh].object] = 1;
     if (group.known && group.substeps_left > 0 && !leaves_cages(tables, h, contacts, group)) return;
     any = true;
     for (const std::uint32_t mesh : group.meshes)
       contacts.refreshed[contacts.surfaces.meshes[mesh].object] = 1;
     find_group_contacts(tables, h, contacts, group);
-    solve_surface_rows(h, contacts, group, tables.particles);
+    solve_surface_rows(h, false, contacts, group, tables.particles);
   });
   return any;
 }

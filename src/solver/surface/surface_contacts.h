@@ -17,8 +17,9 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
 /// Notes where vertices begin a particle substep; before anything moves one.
 void begin_surface_substep(const state::Tables& tables, SurfaceContacts& contacts);
 
-/// Solves the rows that were found.
-void solve_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables);
+/// Solves the rows that were found, for the first time in a substep or once more after contacts with bodies.
+void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceContacts& contacts,
+                    state::Tables& tables);
 
 /// Finds contacts anew where the step begins and where vertices are about to leave their cages, and solves
 /// the rows of those groups. Returns whether there were any: then contacts with bodies are to be solved once

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "solver/surface/surface_kernels.h"
+#include "solver/surface/surface_rows.h"
 #include "solver/surface/surface_tuning.h"
 
 #include <algorithm>
@@ -150,7 +151,9 @@ void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Re
 class RowMaker {
  public:
   RowMaker(const state::Tables& tables, SurfaceContacts& contacts, SurfaceGroup& group)
-      : t_(tables), c_(contacts), group_(group) {}
+      : t_(tables), c_(contacts), group_(group), packer_(contacts.in_open_block, group.rows) {}
+
+  void finish() { packer_.finish(); }
 
   /// Distance that two surfaces keep, or one from itself.
   [[nodiscard]] Real distance_of(std::uint32_t mesh_a, std::uint32_t mesh_b) const {
@@ -280,17 +283,19 @@ class RowMaker {
   void add_row(const SurfaceFound& found) {
     const Real share = found.is_edges ? share_of_edges(found) : share_of_face(found);
     if (!(share > Real(0))) return;
-    SurfaceRow& row = group_.rows.emplace_back();
+    SurfaceRow row;
     row.vertex = found.vertex;
     row.weight = found.weight;
     row.normal = found.normal;
     row.distance = share * distance_of(found);
     row.friction = std::sqrt(object(found.first_mesh).friction * object(found.second_mesh).friction);
+    packer_.add(row);
   }
 
   const state::Tables& t_;
   SurfaceContacts& c_;
   SurfaceGroup& group_;
+  SurfaceRowPacker packer_;
 };
 
 }  // namespace
@@ -344,6 +349,7 @@ void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& c
                           group.found);
   }
   for (const SurfaceFound& found : group.found) maker.take(found);
+  maker.finish();
 }
 
 }  // namespace hooke::solver

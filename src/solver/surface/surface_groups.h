@@ -10,17 +10,6 @@
 
 namespace hooke::solver {
 
-/// Keeps a vertex and a triangle apart, or two edges. Their points sum weight x differ by the gap.
-struct SurfaceRow {
-  std::array<std::uint32_t, 4> vertex = {};
-  std::array<Real, 4> weight = {};
-  Vec3 normal = {};            ///< Unit vector from the second side to the first.
-  Real distance = Real(0);     ///< Distance that they keep [m].
-  Real friction = Real(0);     ///< Friction coefficient of the pair.
-  Real least_speed = Real(0);  ///< Least speed along the normal in this substep [m/s].
-  Real pushed = Real(0);       ///< Impulse along the normal in this substep [N s].
-};
-
 /// Surfaces that may touch each other, one or more, with what was found between them. Groups share no
 /// particle, and what one does has no influence on another.
 struct SurfaceGroup {
@@ -34,7 +23,7 @@ struct SurfaceGroup {
   DVec3 displacement = {};     ///< Motion of the group since contacts were found [m].
   Vec3 displacement_now = {};  ///< Its motion in this substep [m].
   int substeps_left = 0;       ///< Particle substeps for which cages were made.
-  std::vector<SurfaceRow> rows;
+  std::vector<SurfaceRowBlock> rows;
   std::vector<SurfacePairBlock> face_pairs, edge_pairs;
   std::vector<SurfaceFound> found;  ///< Scratch memory.
   std::vector<std::uint32_t> hot;   ///< Scratch memory: pairs that are corrected.
@@ -65,6 +54,7 @@ struct SurfaceContacts {
       found_at;  ///< By vertex: where it was when contacts were found, the same.
   std::vector<state::VelocityRecord> velocity;  ///< By vertex.
   std::vector<SurfaceCage> cage;                ///< By vertex.
+  std::vector<std::uint32_t> in_open_block;     ///< By vertex: bit k says that a row in open block k has it.
   std::vector<std::uint8_t> stays;              ///< By vertex: it is held back in this substep.
   std::vector<SurfaceGroup> groups;  ///< The first `live_groups`, in the order of their first meshes.
   std::size_t live_groups = 0;
@@ -73,6 +63,7 @@ struct SurfaceContacts {
   std::vector<std::uint32_t> order;                      ///< Scratch memory.
   base::DisjointSets sets;                               ///< Scratch memory: meshes that share a group.
   int substeps_left = 0;                                 ///< Particle substeps that the step still has.
+  std::vector<std::uint8_t> touching;                    ///< By object: it is in a group.
   std::vector<std::uint8_t> refreshed;  ///< By object: contacts were found anew in this substep.
   bool regroup = false;                 ///< All bounds are to be made anew.
 

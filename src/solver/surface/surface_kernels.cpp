@@ -16,6 +16,7 @@
 // clang-format off
 #include "solver/simd/vectors.h"
 #include "solver/surface/surface_lanes.h"
+#include "solver/surface/surface_row_lanes.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -79,6 +80,23 @@ bool measure_pairs_here(std::span<SurfacePairBlock> blocks, bool edges, Real sla
 #endif
 }
 
+void prepare_surface_rows_here(std::span<SurfaceRowBlock> blocks, Real h,
+                               const state::PositionRecord* position, const state::VelocityRecord* velocity) {
+#if HWY_TARGET == HWY_SCALAR
+  prepare_surface_rows_scalar(blocks, h, position, velocity);
+#else
+  prepare_surface_row_blocks<Wide>(blocks, h, position, velocity);
+#endif
+}
+
+void solve_surface_rows_here(std::span<SurfaceRowBlock> blocks, state::VelocityRecord* velocity) {
+#if HWY_TARGET == HWY_SCALAR
+  solve_surface_rows_scalar(blocks, velocity);
+#else
+  solve_surface_row_blocks<Wide>(blocks, velocity);
+#endif
+}
+
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -87,6 +105,8 @@ namespace hooke::solver::wide {
 
 HWY_EXPORT(search_surfaces_here);
 HWY_EXPORT(measure_pairs_here);
+HWY_EXPORT(prepare_surface_rows_here);
+HWY_EXPORT(solve_surface_rows_here);
 
 void search_surfaces(const SurfaceSearch& search, std::vector<SurfaceFound>& found) {
   if (is_scalar()) return search_surfaces_scalar(search, found);
@@ -97,6 +117,17 @@ bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
                    const state::PositionRecord* position) {
   if (is_scalar()) return measure_pairs_scalar(blocks, edges, slack, position);
   return HWY_DYNAMIC_DISPATCH(measure_pairs_here)(blocks, edges, slack, position);
+}
+
+void prepare_surface_rows(std::span<SurfaceRowBlock> blocks, Real h, const state::PositionRecord* position,
+                          const state::VelocityRecord* velocity) {
+  if (is_scalar()) return prepare_surface_rows_scalar(blocks, h, position, velocity);
+  HWY_DYNAMIC_DISPATCH(prepare_surface_rows_here)(blocks, h, position, velocity);
+}
+
+void solve_surface_rows(std::span<SurfaceRowBlock> blocks, state::VelocityRecord* velocity) {
+  if (is_scalar()) return solve_surface_rows_scalar(blocks, velocity);
+  HWY_DYNAMIC_DISPATCH(solve_surface_rows_here)(blocks, velocity);
 }
 
 }  // namespace hooke::solver::wide
@@ -113,6 +144,15 @@ void search_surfaces(const SurfaceSearch& search, std::vector<SurfaceFound>& fou
 bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
                    const state::PositionRecord* position) {
   return measure_pairs_scalar(blocks, edges, slack, position);
+}
+
+void prepare_surface_rows(std::span<SurfaceRowBlock> blocks, Real h, const state::PositionRecord* position,
+                          const state::VelocityRecord* velocity) {
+  prepare_surface_rows_scalar(blocks, h, position, velocity);
+}
+
+void solve_surface_rows(std::span<SurfaceRowBlock> blocks, state::VelocityRecord* velocity) {
+  solve_surface_rows_scalar(blocks, velocity);
 }
 
 }  // namespace hooke::solver::wide

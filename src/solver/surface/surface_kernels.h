@@ -23,4 +23,16 @@ bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
 bool measure_pairs_scalar(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
                           const state::PositionRecord* position);
 
+/// Sets what rows ask for in a substep of `h` [s] from where vertices are when it begins; see
+/// solve_surface_rows of solver/surface/surface_rows.h.
+void prepare_surface_rows(std::span<SurfaceRowBlock> blocks, Real h, const state::PositionRecord* position,
+                          const state::VelocityRecord* velocity);
+void prepare_surface_rows_scalar(std::span<SurfaceRowBlock> blocks, Real h,
+                                 const state::PositionRecord* position,
+                                 const state::VelocityRecord* velocity);
+
+/// Solves rows once, block by block.
+void solve_surface_rows(std::span<SurfaceRowBlock> blocks, state::VelocityRecord* velocity);
+void solve_surface_rows_scalar(std::span<SurfaceRowBlock> blocks, state::VelocityRecord* velocity);
+
 }  // namespace hooke::solver::wide

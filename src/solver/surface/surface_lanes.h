@@ -83,17 +83,13 @@ HWY_INLINE Triple<Number> choose3(Number yes_if_positive, const Triple<Number>& 
   return {choose(condition, yes.x, no.x), choose(condition, yes.y, no.y), choose(condition, yes.z, no.z)};
 }
 
-/// `a` with the length 1, or up where it has none. It is scaled before, so that its square does not
-/// underflow.
+/// `a` with the length 1, or up where it has none.
 template <class Number>
 HWY_INLINE Triple<Number> direction_of(const Triple<Number>& a) {
   const Number zero(Real(0));
-  const auto size = [&](Number x) HWY_ATTR { return larger(x, zero - x); };
-  const Number largest = larger(size(a.x), larger(size(a.y), size(a.z)));
-  const Triple<Number> b = scaled(share_of(Number(Real(1)), largest), a);
-  const Number l = root(dot(b, b));
+  const Number l = root(dot(a, a));
   const Triple<Number> up = {zero, Number(Real(1)), zero};
-  return choose3(l, scaled(share_of(Number(Real(1)), l), b), up);
+  return choose3(l, scaled(share_of(Number(Real(1)), l), a), up);
 }
 
 /// The nearest points of two features, and the direction between them.
@@ -119,22 +115,27 @@ HWY_INLINE Nearest<Number> nearest_of_face(const Triple<Number>& p, const Triple
   const Number vc = d1 * d4 - d3 * d2;
   const Number vb = d5 * d2 - d1 * d6;
   const Number va = d3 * d6 - d5 * d4;
-  const Number all = va + vb + vc;
-  Number v = share_of(vb, all);
-  Number w = share_of(vc, all);
-  Number inside = one;
-  const auto take = [&](Number x, Number y, Number z, Number new_v, Number new_w) HWY_ATTR {
-    v = choose_not_negative(x, y, z, new_v, v);
-    w = choose_not_negative(x, y, z, new_w, w);
+  // The weights of b and c over a common denominator, so that one division serves all regions.
+  Number v_part = vb, w_part = vc, whole = va + vb + vc;
+  Number inside = one, on_bc = zero;
+  const auto take = [&](Number x, Number y, Number z, Number new_v, Number new_w, Number new_whole) HWY_ATTR {
+    v_part = choose_not_negative(x, y, z, new_v, v_part);
+    w_part = choose_not_negative(x, y, z, new_w, w_part);
+    whole = choose_not_negative(x, y, z, new_whole, whole);
     inside = choose_not_negative(x, y, z, zero, inside);
+    on_bc = choose_not_negative(x, y, z, zero, on_bc);
   };
-  const Number along_bc = share_of(d4 - d3, (d4 - d3) + (d5 - d6));
-  take(zero - va, d4 - d3, d5 - d6, one - along_bc, along_bc);
-  take(zero - vb, d2, zero - d6, zero, share_of(d2, d2 - d6));
-  take(zero - vc, d1, zero - d3, share_of(d1, d1 - d3), zero);
-  take(d6, d6 - d5, one, zero, one);
-  take(d3, d3 - d4, one, one, zero);
-  take(zero - d1, zero - d2, one, zero, zero);
+  const Number from_b = d4 - d3, from_c = d5 - d6;
+  take(zero - va, from_b, from_c, from_c, from_b, from_b + from_c);
+  on_bc = one - inside;
+  take(zero - vb, d2, zero - d6, zero, d2, d2 - d6);
+  take(zero - vc, d1, zero - d3, d1, zero, d1 - d3);
+  take(d6, d6 - d5, one, zero, one, one);
+  take(d3, d3 - d4, one, one, zero, one);
+  take(zero - d1, zero - d2, one, zero, zero, one);
+  const Number w = share_of(w_part, whole);
+  // On the edge from b to c the weight of a is to be exactly zero.
+  const Number v = choose(above(on_bc, zero), one - w, share_of(v_part, whole));
 
   const Triple<Number> face = cross(ab, ac);
   const Number side = dot(face, ap);
@@ -161,8 +162,8 @@ HWY_INLINE Nearest<Number> nearest_of_edges(const Triple<Number>& a, const Tripl
   const Number turned = sine - Number(Real(1e-4)) * scale;
   Number s = choose(above(turned, zero), clamped(share_of(uv * vr - ur * vv, sine)), zero);
   const Number t_free = share_of(uv * s + vr, vv);
-  s = choose(above(zero, t_free), clamped(share_of(zero - ur, uu)), s);
-  s = choose(above(t_free, one), clamped(share_of(uv - ur, uu)), s);
+  const Number s_of_end = clamped(share_of(choose(above(zero, t_free), zero, uv) - ur, uu));
+  s = choose(above(zero, t_free * (one - t_free)), s_of_end, s);
   const Number t = clamped(t_free);
   const Triple<Number> between = difference(sum(r, scaled(s, u)), scaled(t, v));
   const Triple<Number> across = cross(u, v);
@@ -346,6 +347,27 @@ class SurfaceSearcher {
     emit<kFirstSide>(batch, i, nearest, gap, flags);
   }
 
+  /// Whether other features speak for a pair that is only near: where the nearest points are ends of edges,
+  /// or an edge or a corner that another triangle owns.
+  template <int kFirstSide>
+  HWY_INLINE bool is_left_to_others(const Batch& batch, std::uint32_t i, const Real (&lane)[9][kLanes],
+                                    std::uint32_t j) const {
+    unsigned zeros = 0;
+    for (unsigned k = 0; k < 4; ++k) zeros |= lane[5 + k][j] == Real(0) ? 1U << k : 0U;
+    if (zeros == 0) return false;
+    if constexpr (kFirstSide == 2) return true;
+    const SurfaceMesh& mesh = batch.turned[i] != 0 ? *s_.mesh_a : *s_.mesh_b;
+    const SurfaceTriangle& triangle = mesh.triangles[batch.feature[1][i]];
+    for (unsigned k = 0; k < 3; ++k) {
+      const unsigned next = (k + 1) % 3;
+      if (zeros == 1U << (k + 1)) return (triangle.owns_edge >> next & 1U) == 0;
+      if (zeros == (14U & ~(1U << (k + 1)))) {
+        return (triangle.owns_vertex >> k & 1U) == 0 || batch.record[0][i] > 4 * triangle.vertex[k];
+      }
+    }
+    return false;
+  }
+
   template <int kFirstSide>
   HWY_INLINE void emit(const Batch& batch, std::uint32_t i, const Nearest<Number>& nearest, Number gap,
                        Number flags) {
@@ -359,6 +381,8 @@ class SurfaceSearcher {
     const std::uint32_t count = std::min<std::uint32_t>(kLanesOf<Number>, batch.count - i);
     for (std::uint32_t j = 0; j < count; ++j) {
       if (!(lane[0][j] > Real(0))) continue;
+      if (lane[0][j] == Real(SurfaceFound::kNear) && is_left_to_others<kFirstSide>(batch, i + j, lane, j))
+        continue;
       SurfaceFound& found = found_.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
         found.vertex[k] = batch.record[k][i + j] / 4;

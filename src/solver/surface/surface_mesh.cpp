@@ -264,23 +264,35 @@ void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::
   MeshBuilder(triangles, rest).build(mesh);
 }
 
-/// Gives the vertices at both ends of each hook that holds points together one number.
+/// Calls `visit` with the particles by which a place of a hook is joined with others: all of a surface, and
+/// of a rope only the nearest one, so that hooks along a rope do not join all that hangs on it.
+template <class Visit>
+void for_joined_particles(const state::HookPlace& place, std::span<const std::uint32_t> vertex_of,
+                          Visit visit) {
+  std::uint32_t nearest = 0;
+  for (std::uint32_t k = 0; k < place.particle_count; ++k) {
+    if (place.weight[k] > place.weight[nearest]) nearest = k;
+  }
+  for (std::uint32_t k = 0; k < place.particle_count; ++k) {
+    if (k == nearest || vertex_of[place.particle[k]] != kNone) visit(place.particle[k]);
+  }
+}
+
+/// Gives the vertices that hooks hold together one number, also those held by the same point of a rope.
 void join_hooked(const state::Tables& t, std::span<const std::uint32_t> vertex_of, SurfaceMeshes& surfaces) {
-  base::DisjointSets sets(surfaces.particle.size());
+  base::DisjointSets sets(vertex_of.size());
   for (const state::Hook& hook : t.hooks) {
     if (hook.broken || hook.kind == HookKind::kDistance || !hook.a.is_point() || !hook.b.is_point()) continue;
     std::uint32_t first = kNone;
-    for (const state::HookPlace* place : {&hook.a, &hook.b}) {
-      for (std::uint32_t k = 0; k < place->particle_count; ++k) {
-        const std::uint32_t vertex = vertex_of[place->particle[k]];
-        if (vertex == kNone) continue;
-        if (first == kNone) first = vertex;
-        sets.merge(first, vertex);
-      }
-    }
+    for (const state::HookPlace* place : {&hook.a, &hook.b})
+      for_joined_particles(*place, vertex_of, [&](std::uint32_t particle) {
+        if (first == kNone) first = particle;
+        sets.merge(first, particle);
+      });
   }
   surfaces.joined.resize(surfaces.particle.size());
-  for (std::uint32_t i = 0; i < surfaces.joined.size(); ++i) surfaces.joined[i] = sets.root(i);
+  for (std::uint32_t i = 0; i < surfaces.joined.size(); ++i)
+    surfaces.joined[i] = sets.root(surfaces.particle[i]);
 }
 
 }  // namespace

@@ -90,6 +90,21 @@ struct SurfaceSearch {
   Real reserve = Real(0);                           ///< Rounding of positions [m].
 };
 
+/// Rows that keep vertices and triangles apart, or edges, side by side. The points sum weight x of the two
+/// sides differ by the gap. Rows of a block share no vertex; lanes without a row repeat the last one.
+struct alignas(64) SurfaceRowBlock {
+  std::uint32_t record[4][kLanes] = {};  ///< Four times the vertices.
+  Real weight[4][kLanes] = {};           ///< Those of the second side are negative.
+  Real normal[3][kLanes] = {};           ///< From the second side to the first.
+  Real distance[kLanes] = {};            ///< Distance that is kept [m].
+  Real friction[kLanes] = {};            ///< Friction coefficient of the pair.
+  Real mass[kLanes] = {};                ///< Mass that resists along any direction [kg]; 0 if nothing moves.
+  Real least_speed[kLanes] = {};         ///< Least speed along the normal in this substep [m/s].
+  Real pushed[kLanes] = {};              ///< Impulse along the normal in this substep [N s].
+  Real rubbed[3][kLanes] = {};           ///< Impulse of friction in this substep [N s].
+  std::int32_t count = 0;
+};
+
 /// Pairs that must not cross, side by side. Those of edges and those of vertices and triangles have blocks of
 /// their own.
 struct alignas(64) SurfacePairBlock {

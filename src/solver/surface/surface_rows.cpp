@@ -1,72 +1,84 @@
 #include "solver/surface/surface_rows.h"
 
+#include "solver/surface/surface_kernels.h"
 #include "solver/surface/surface_tuning.h"
 
-#include <algorithm>
+#include <bit>
 
 namespace hooke::solver {
 
 namespace {
 
-/// A row with the velocities of its vertices.
-class RowOfParticles {
- public:
-  RowOfParticles(const SurfaceContacts& contacts, const SurfaceRow& row, state::Particles& particles)
-      : row_(row) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      record_[k] = &particles.velocity[contacts.surfaces.particle[row.vertex[k]]];
-      velocity_ += row.weight[k] * record_[k]->v;
-      inverse_mass_ += row.weight[k] * row.weight[k] * record_[k]->inverse_mass;
-    }
+void set_lane(const SurfaceRow& row, int lane, SurfaceRowBlock& block) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    block.record[k][lane] = 4 * row.vertex[k];
+    block.weight[k][lane] = row.weight[k];
   }
-  [[nodiscard]] Vec3 velocity() const { return velocity_; }
-  [[nodiscard]] Real inverse_mass() const { return inverse_mass_; }
-
-  void push(Vec3 impulse) {
-    for (std::size_t k = 0; k < 4; ++k)
-      record_[k]->v += (row_.weight[k] * record_[k]->inverse_mass) * impulse;
-  }
-
- private:
-  const SurfaceRow& row_;
-  std::array<state::VelocityRecord*, 4> record_ = {};
-  Vec3 velocity_ = {};
-  Real inverse_mass_ = Real(0);
-};
-
-void prepare_row(Real h, const SurfaceContacts& contacts, SurfaceRow& row) {
-  Vec3 between;
-  for (std::size_t k = 0; k < 4; ++k) between += row.weight[k] * contacts.position[row.vertex[k]].x;
-  const Real s = dot(row.normal, between) - row.distance;
-  row.least_speed = s > Real(0) ? -s / h : std::min(kSurfaceRecovery * -s / h, kSurfaceRecoverySpeed);
-  row.pushed = Real(0);
+  block.normal[0][lane] = row.normal.x;
+  block.normal[1][lane] = row.normal.y;
+  block.normal[2][lane] = row.normal.z;
+  block.distance[lane] = row.distance;
+  block.friction[lane] = row.friction;
 }
 
-void solve_row(const SurfaceContacts& contacts, bool with_friction, SurfaceRow& row,
-               state::Particles& particles) {
-  RowOfParticles solved(contacts, row, particles);
-  const Real w = solved.inverse_mass();
-  if (!(w > Real(0))) return;
-  const Real speed = dot(row.normal, solved.velocity());
-  const Real before = row.pushed;
-  row.pushed = std::max(before + (row.least_speed - speed) / w, Real(0));
-  Vec3 impulse = (row.pushed - before) * row.normal;
-  if (with_friction && row.pushed > Real(0)) {
-    const Vec3 sliding = solved.velocity() - speed * row.normal;
-    const Real rate = length(sliding);
-    if (rate > Real(0)) impulse -= (std::min(rate / w, row.friction * row.pushed) / rate) * sliding;
+void copy_lane(int from, int to, SurfaceRowBlock& block) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    block.record[k][to] = block.record[k][from];
+    block.weight[k][to] = block.weight[k][from];
   }
-  solved.push(impulse);
+  for (auto& normal : block.normal) normal[to] = normal[from];
+  block.distance[to] = block.distance[from];
+  block.friction[to] = block.friction[from];
 }
 
 }  // namespace
 
-void solve_surface_rows(Real h, const SurfaceContacts& contacts, SurfaceGroup& group,
-                        state::Particles& particles) {
-  for (SurfaceRow& row : group.rows) prepare_row(h, contacts, row);
-  for (int sweep = 1; sweep <= kSurfaceSweeps; ++sweep) {
-    for (SurfaceRow& row : group.rows) solve_row(contacts, sweep == kSurfaceSweeps, row, particles);
+void SurfaceRowPacker::add(const SurfaceRow& row) {
+  std::uint32_t used = 0;
+  for (const std::uint32_t vertex : row.vertex) used |= in_open_block_[vertex];
+  if (used == ~std::uint32_t{0}) {
+    std::uint32_t fullest = 0;
+    for (std::uint32_t i = 1; i < kOpenBlocks; ++i) {
+      if (open_[i].count > open_[fullest].count) fullest = i;
+    }
+    close(fullest);
+    used &= ~(std::uint32_t{1} << fullest);
   }
+  const auto number = static_cast<std::uint32_t>(std::countr_one(used));
+  SurfaceRowBlock& block = open_[number];
+  set_lane(row, block.count++, block);
+  for (const std::uint32_t vertex : row.vertex) in_open_block_[vertex] |= std::uint32_t{1} << number;
+  if (block.count == kLanes) close(number);
+}
+
+void SurfaceRowPacker::finish() {
+  for (std::uint32_t i = 0; i < kOpenBlocks; ++i) close(i);
+}
+
+void SurfaceRowPacker::close(std::uint32_t number) {
+  SurfaceRowBlock& block = open_[number];
+  if (block.count == 0) return;
+  for (int lane = 0; lane < block.count; ++lane) {
+    for (const auto& record : block.record) in_open_block_[record[lane] / 4] &= ~(std::uint32_t{1} << number);
+  }
+  for (int lane = block.count; lane < kLanes; ++lane) copy_lane(block.count - 1, lane, block);
+  blocks_.push_back(block);
+  block.count = 0;
+}
+
+void solve_surface_rows(Real h, bool again, SurfaceContacts& contacts, SurfaceGroup& group,
+                        state::Particles& particles) {
+  if (group.rows.empty()) return;
+  const std::vector<std::uint32_t>& particle = contacts.surfaces.particle;
+  for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t) {
+    contacts.velocity[vertex] = particles.velocity[particle[vertex]];
+  });
+  if (!again) wide::prepare_surface_rows(group.rows, h, contacts.position.data(), contacts.velocity.data());
+  for (int sweep = 1; sweep <= kSurfaceSweeps; ++sweep)
+    wide::solve_surface_rows(group.rows, contacts.velocity.data());
+  for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t) {
+    particles.velocity[particle[vertex]].v = contacts.velocity[vertex].v;
+  });
 }
 
 }  // namespace hooke::solver
