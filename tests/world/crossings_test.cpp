@@ -39,42 +39,40 @@ Surfaces sheets(double height, double slope) {
 
 }  // namespace
 
-TEST_SUITE_BEGIN("world/crossings");
+TEST_SUITE("world/crossings") {
+  TEST_CASE("intersect: a line through a triangle crosses it, and one beside or above it does not") {
+    CHECK(count_crossings(triangle_and_line({0.2, 1, 0.2}, {0.2, -1, 0.2})).crossing == 1);
+    CHECK(count_crossings(triangle_and_line({0.9, 1, 0.9}, {0.9, -1, 0.9})).crossing == 0);
+    CHECK(count_crossings(triangle_and_line({0.2, 1, 0.2}, {0.2, 0.1, 0.2})).crossing == 0);
+  }
 
-TEST_CASE("intersect: a line through a triangle crosses it, and one beside or above it does not") {
-  CHECK(count_crossings(triangle_and_line({0.2, 1, 0.2}, {0.2, -1, 0.2})).crossing == 1);
-  CHECK(count_crossings(triangle_and_line({0.9, 1, 0.9}, {0.9, -1, 0.9})).crossing == 0);
-  CHECK(count_crossings(triangle_and_line({0.2, 1, 0.2}, {0.2, 0.1, 0.2})).crossing == 0);
+  TEST_CASE("intersect: the sign is right where doubles cannot say it") {
+    const double tiny = std::ldexp(1.0, -52);
+    // The end of the line is one unit in the last place beyond the plane, then exactly on it.
+    const DVec3 a = {0.1, 0.1, 0.1};
+    CHECK(exact_orientation(a, {1.1, 0.1, 0.1}, {0.1, 0.1, 1.1}, {0.3, 0.1 + 0.125 * tiny, 0.3}) == 1);
+    CHECK(exact_orientation(a, {1.1, 0.1, 0.1}, {0.1, 0.1, 1.1}, {0.3, 0.1 - 0.125 * tiny, 0.3}) == -1);
+    CHECK(exact_orientation(a, {1.1, 0.1, 0.1}, {0.1, 0.1, 1.1}, {0.3, 0.1, 0.3}) == 0);
+    // x + y + z = 3 holds exactly for these, though none of the products is exact.
+    const double third = 1.0 / 3.0;
+    CHECK(exact_orientation({3 * third, 1, 1}, {1, third, 3 - 1 - third}, {1, 1, 1}, {2, 0.5, 0.5}) == 0);
+  }
+
+  TEST_CASE("intersect: lines in the plane of a triangle are counted apart") {
+    const Crossings flat = count_crossings(triangle_and_line({-1, 0, 0.2}, {2, 0, 0.2}));
+    CHECK(flat.crossing == 0);
+    CHECK(flat.coplanar == 1);
+    CHECK(count_crossings(triangle_and_line({0.2, 0, 0.2}, {0.2, 1, 0.2})).touching == 1);
+  }
+
+  TEST_CASE("intersect: a planted crossing of two sheets is found, and sheets a hair apart do not cross") {
+    CHECK(count_crossings(sheets(1e-9, 0)).crossing == 0);
+    CHECK(count_crossings(sheets(-1e-9, 0)).crossing == 0);
+    // The upper sheet goes through the lower one along a line between two columns, through 19 rows of cells.
+    const std::size_t through = count_crossings(sheets(-0.475, 1)).crossing;
+    CHECK(through >= 38);
+    CHECK(through <= 200);
+  }
 }
-
-TEST_CASE("intersect: the sign is right where doubles cannot say it") {
-  const double tiny = std::ldexp(1.0, -52);
-  // The end of the line is one unit in the last place beyond the plane, then exactly on it.
-  const DVec3 a = {0.1, 0.1, 0.1};
-  CHECK(exact_orientation(a, {1.1, 0.1, 0.1}, {0.1, 0.1, 1.1}, {0.3, 0.1 + 0.125 * tiny, 0.3}) == 1);
-  CHECK(exact_orientation(a, {1.1, 0.1, 0.1}, {0.1, 0.1, 1.1}, {0.3, 0.1 - 0.125 * tiny, 0.3}) == -1);
-  CHECK(exact_orientation(a, {1.1, 0.1, 0.1}, {0.1, 0.1, 1.1}, {0.3, 0.1, 0.3}) == 0);
-  // x + y + z = 3 holds exactly for these, though none of the products is exact.
-  const double third = 1.0 / 3.0;
-  CHECK(exact_orientation({3 * third, 1, 1}, {1, third, 3 - 1 - third}, {1, 1, 1}, {2, 0.5, 0.5}) == 0);
-}
-
-TEST_CASE("intersect: lines in the plane of a triangle are counted apart") {
-  const Crossings flat = count_crossings(triangle_and_line({-1, 0, 0.2}, {2, 0, 0.2}));
-  CHECK(flat.crossing == 0);
-  CHECK(flat.coplanar == 1);
-  CHECK(count_crossings(triangle_and_line({0.2, 0, 0.2}, {0.2, 1, 0.2})).touching == 1);
-}
-
-TEST_CASE("intersect: a planted crossing of two sheets is found, and sheets a hair apart do not cross") {
-  CHECK(count_crossings(sheets(1e-9, 0)).crossing == 0);
-  CHECK(count_crossings(sheets(-1e-9, 0)).crossing == 0);
-  // The upper sheet goes through the lower one along a line between two columns, through 19 rows of cells.
-  const std::size_t through = count_crossings(sheets(-0.475, 1)).crossing;
-  CHECK(through >= 38);
-  CHECK(through <= 200);
-}
-
-TEST_SUITE_END();
 
 }  // namespace hooke

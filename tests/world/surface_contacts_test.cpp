@@ -182,237 +182,238 @@ Room fast_sheets() {
 
 }  // namespace
 
-TEST_SUITE_BEGIN("world/surface_contacts");
-
-TEST_CASE("intersect: four sheets that fall on a ball and fold cross in none of 300 frames") {
-  Room room = sheets_on_ball(20);
-  const Run result = run(room, 300);
-  CHECK(result.crossing == 0);
-  CHECK(result.touching == 0);
-  CHECK(result.held_back == 0);
-}
-
-TEST_CASE("intersect: a sheet that falls on its edge does not cross itself in 300 frames") {
-  Room room = folding_sheet();
-  const Run result = run(room, 300);
-  CHECK(result.crossing == 0);
-  CHECK(result.held_back == 0);
-}
-
-TEST_CASE("intersect: jellies in a heap do not cross in 300 frames") {
-  Room room = heap_of_jellies();
-  const Run result = run(room, 300);
-  CHECK(result.crossing == 0);
-  CHECK(result.held_back == 0);
-  // Whether they lie or stand, each keeps its height over the ground and the others.
-  for (const Surface& surface : room.surfaces)
-    CHECK(mean_of(room.world.positions(std::get<SolidId>(surface))).y > 0.05);
-}
-
-TEST_CASE("intersect: a jelly stays on a net for 300 frames") {
-  Room room = jelly_on_net();
-  const Run result = run(room, 300);
-  CHECK(result.crossing == 0);
-  CHECK(result.held_back == 0);
-  CHECK(mean_of(room.world.positions(std::get<SolidId>(room.surfaces.back()))).y > 0.2);
-}
-
-TEST_CASE("intersect: sheets that meet at 40 m/s do not pass in 300 frames, and gain no energy") {
-  Room room = fast_sheets();
-  const double before = room.world.measure().energy.kinetic;
-  room.world.step(kFrame);
-  const Run result = run(room, 299);
-  CHECK(result.crossing == 0);
-  const auto y = [&](int i) { return mean_of(room.world.positions(std::get<ClothId>(room.surfaces[i]))).y; };
-  CHECK(y(0) > y(1));  // Both fall on, in the order in which they met.
-  const Measurement after = room.world.measure();
-  // They had no momentum, and both fell freely: what is left of their speed against their fall is small.
-  const double mass = 2 * 0.2 * 0.38 * 0.38;
-  const double fall = 9.81 * 5;
-  CHECK(after.momentum.y == doctest::Approx(-mass * fall).epsilon(2e-3));
-  CHECK(after.energy.kinetic - 0.5 * mass * fall * fall < 0.2 * before);
-}
-
-TEST_CASE("sheets that fly side by side keep their velocity to 1e-4") {
-  Room room;
-  for (const double y : {0.0, 0.006}) {
-    ClothDesc desc = sheet(20, {0.3 * y, y, 0});
-    desc.velocity = {Real(20), Real(0), Real(0)};
-    room.add(desc);
+TEST_SUITE("world/surface_contacts") {
+  TEST_CASE("intersect: four sheets that fall on a ball and fold cross in none of 300 frames") {
+    Room room = sheets_on_ball(20);
+    const Run result = run(room, 300);
+    CHECK(result.crossing == 0);
+    CHECK(result.touching == 0);
+    CHECK(result.held_back == 0);
   }
-  room.world.set_gravity({});
-  run(room, 60);
-  for (const Surface& surface : room.surfaces) {
-    const PointView v = room.world.velocities(std::get<ClothId>(surface));
-    double worst = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) worst = std::max(worst, length(v[i] - DVec3{20, 0, 0}));
-    CHECK(worst < 20 * 1e-4);
+
+  TEST_CASE("intersect: a sheet that falls on its edge does not cross itself in 300 frames") {
+    Room room = folding_sheet();
+    const Run result = run(room, 300);
+    CHECK(result.crossing == 0);
+    CHECK(result.held_back == 0);
   }
-}
 
-namespace {
-
-/// Speed after 1 s of a sheet that slides down a pinned one of the given slope [rad].
-double speed_of_slide(double slope, Real friction) {
-  Room room;
-  const DVec3 down = {std::cos(slope), -std::sin(slope), 0};
-  const DVec3 normal = {std::sin(slope), std::cos(slope), 0};
-  ClothDesc base = sheet(2, {});
-  base.columns = 60;
-  base.rows = 16;
-  base.width = Real(59) * kEdge;
-  base.height = Real(15) * kEdge;
-  base.column_direction = vector_cast<Real>(down);
-  base.corner = DVec3{0, 0, -0.15};
-  for (std::uint32_t i = 0; i < 60 * 16; ++i) base.pins.push_back({.point = i});
-  base.contact.friction = friction;
-  base.self_contact = false;
-  room.add(base);
-  ClothDesc moving = sheet(8, {});
-  moving.column_direction = vector_cast<Real>(down);
-  moving.corner = 0.031 * down + 0.0051 * normal + DVec3{0, 0, -0.067};
-  moving.contact.friction = friction;
-  const ClothId id = room.add(moving);
-  constexpr int kFrames = 36;
-  CHECK(run(room, kFrames).crossing == 0);
-  return dot(down, mean_of(room.world.velocities(id))) / (kFrames / 60.0);
-}
-
-}  // namespace
-
-TEST_CASE("a sheet slides on a sheet as Coulomb's law says: g (sin a - mu cos a), without friction g sin a") {
-  const double slope = 20.0 / 180 * std::numbers::pi;
-  const double g = 9.81;
-  CHECK(speed_of_slide(slope, Real(0)) == doctest::Approx(g * std::sin(slope)).epsilon(0.01));
-  const double held = g * (std::sin(slope) - 0.3 * std::cos(slope));
-  CHECK(speed_of_slide(slope, Real(0.3)) == doctest::Approx(held).epsilon(0.03));
-  // tan 20 degrees is 0.364: three percent more friction holds it, and it stands.
-  CHECK(std::abs(speed_of_slide(slope, Real(0.375))) < 0.02);
-}
-
-TEST_CASE("four layers on the ground come to rest, one thickness apart") {
-  Room room;
-  room.add_ground();
-  for (int layer = 0; layer < 4; ++layer)
-    room.add(sheet(16, {0.007 * layer, 0.003 + 0.0075 * layer, 0.005 * layer}));
-  CHECK(run(room, 300).crossing == 0);
-  double below = 0;
-  for (const Surface& surface : room.surfaces) {
-    const ClothId cloth = std::get<ClothId>(surface);
-    CHECK(rms_of(room.world.velocities(cloth)) < 0.01);
-    const double y = mean_of(room.world.positions(cloth)).y;
-    if (below > 0) CHECK(y - below == doctest::Approx(0.25 * 0.02).epsilon(0.2));
-    below = y;
+  TEST_CASE("intersect: jellies in a heap do not cross in 300 frames") {
+    Room room = heap_of_jellies();
+    const Run result = run(room, 300);
+    CHECK(result.crossing == 0);
+    CHECK(result.held_back == 0);
+    // Whether they lie or stand, each keeps its height over the ground and the others.
+    for (const Surface& surface : room.surfaces)
+      CHECK(mean_of(room.world.positions(std::get<SolidId>(surface))).y > 0.05);
   }
-}
 
-TEST_CASE("filters keep cloths from touching, and a group that is positive makes them touch") {
-  const auto gap_after = [](FilterDesc filter) {
+  TEST_CASE("intersect: a jelly stays on a net for 300 frames") {
+    Room room = jelly_on_net();
+    const Run result = run(room, 300);
+    CHECK(result.crossing == 0);
+    CHECK(result.held_back == 0);
+    CHECK(mean_of(room.world.positions(std::get<SolidId>(room.surfaces.back()))).y > 0.2);
+  }
+
+  TEST_CASE("intersect: sheets that meet at 40 m/s do not pass in 300 frames, and gain no energy") {
+    Room room = fast_sheets();
+    const double before = room.world.measure().energy.kinetic;
+    room.world.step(kFrame);
+    const Run result = run(room, 299);
+    CHECK(result.crossing == 0);
+    const auto y = [&](int i) {
+      return mean_of(room.world.positions(std::get<ClothId>(room.surfaces[i]))).y;
+    };
+    CHECK(y(0) > y(1));  // Both fall on, in the order in which they met.
+    const Measurement after = room.world.measure();
+    // They had no momentum, and both fell freely: what is left of their speed against their fall is small.
+    const double mass = 2 * 0.2 * 0.38 * 0.38;
+    const double fall = 9.81 * 5;
+    CHECK(after.momentum.y == doctest::Approx(-mass * fall).epsilon(2e-3));
+    CHECK(after.energy.kinetic - 0.5 * mass * fall * fall < 0.2 * before);
+  }
+
+  TEST_CASE("sheets that fly side by side keep their velocity to 1e-4") {
     Room room;
-    room.add_ground();
-    for (int layer = 0; layer < 2; ++layer) {
-      ClothDesc desc = sheet(8, {0.003 * layer, 0.003 + 0.01 * layer, 0});
-      desc.filter = filter;
-      desc.self_contact = false;
+    for (const double y : {0.0, 0.006}) {
+      ClothDesc desc = sheet(20, {0.3 * y, y, 0});
+      desc.velocity = {Real(20), Real(0), Real(0)};
       room.add(desc);
     }
+    room.world.set_gravity({});
     run(room, 60);
-    return mean_of(room.world.positions(std::get<ClothId>(room.surfaces[1]))).y -
-           mean_of(room.world.positions(std::get<ClothId>(room.surfaces[0]))).y;
-  };
-  CHECK(gap_after({}) > 0.004);
-  CHECK(gap_after({.mask = 2}) < 0.001);
-  CHECK(gap_after({.group = -3}) < 0.001);
-  CHECK(gap_after({.mask = 2, .group = 3}) > 0.004);
-}
-
-TEST_CASE("what is 100 m away changes no bit of sheets that touch") {
-  const auto heights = [](bool with_other) {
-    Room room = sheets_on_ball(10);
-    if (with_other) {
-      ClothDesc far = sheet(12, {100, 0.4, 0});
-      far.velocity = {Real(3), Real(5), Real(0)};
-      room.add(far);
-      far.corner.y += 0.05;
-      far.velocity = {};
-      room.add(far);
+    for (const Surface& surface : room.surfaces) {
+      const PointView v = room.world.velocities(std::get<ClothId>(surface));
+      double worst = 0;
+      for (std::size_t i = 0; i < v.size(); ++i) worst = std::max(worst, length(v[i] - DVec3{20, 0, 0}));
+      CHECK(worst < 20 * 1e-4);
     }
-    run(room, 60);
-    std::vector<DVec3> points;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const PointView x = room.world.positions(std::get<ClothId>(room.surfaces[i]));
-      for (std::size_t k = 0; k < x.size(); ++k) points.push_back(x[k]);
-    }
-    return points;
-  };
-  const std::vector<DVec3> alone = heights(false);
-  const std::vector<DVec3> together = heights(true);
-  REQUIRE(alone.size() == together.size());
-  for (std::size_t i = 0; i < alone.size(); ++i) REQUIRE(length(alone[i] - together[i]) == 0);
-}
+  }
 
-TEST_CASE("a snapshot in the middle of contact goes on with the same bits") {
-  Room room = sheets_on_ball(12);
-  run(room, 20);
-  const Snapshot snapshot = room.world.snapshot();
-  run(room, 20);
-  const std::uint64_t hash = room.world.state_hash();
-  REQUIRE(room.world.restore(snapshot));
-  run(room, 20);
-  CHECK(room.world.state_hash() == hash);
-}
+  namespace {
 
-TEST_CASE("every instruction set and number of workers gives the same bits") {
-  std::uint64_t expected = 0;
-  const auto hash_with = [](int workers) {
-    Room room = sheets_on_ball(12);
-    room.world = World::create({.substeps = 8, .workers = workers}).value();
-    room.surfaces.clear();
+  /// Speed after 1 s of a sheet that slides down a pinned one of the given slope [rad].
+  double speed_of_slide(double slope, Real friction) {
+    Room room;
+    const DVec3 down = {std::cos(slope), -std::sin(slope), 0};
+    const DVec3 normal = {std::sin(slope), std::cos(slope), 0};
+    ClothDesc base = sheet(2, {});
+    base.columns = 60;
+    base.rows = 16;
+    base.width = Real(59) * kEdge;
+    base.height = Real(15) * kEdge;
+    base.column_direction = vector_cast<Real>(down);
+    base.corner = DVec3{0, 0, -0.15};
+    for (std::uint32_t i = 0; i < 60 * 16; ++i) base.pins.push_back({.point = i});
+    base.contact.friction = friction;
+    base.self_contact = false;
+    room.add(base);
+    ClothDesc moving = sheet(8, {});
+    moving.column_direction = vector_cast<Real>(down);
+    moving.corner = 0.031 * down + 0.0051 * normal + DVec3{0, 0, -0.067};
+    moving.contact.friction = friction;
+    const ClothId id = room.add(moving);
+    constexpr int kFrames = 36;
+    CHECK(run(room, kFrames).crossing == 0);
+    return dot(down, mean_of(room.world.velocities(id))) / (kFrames / 60.0);
+  }
+
+  }  // namespace
+
+  TEST_CASE(
+      "a sheet slides on a sheet as Coulomb's law says: g (sin a - mu cos a), without friction g sin a") {
+    const double slope = 20.0 / 180 * std::numbers::pi;
+    const double g = 9.81;
+    CHECK(speed_of_slide(slope, Real(0)) == doctest::Approx(g * std::sin(slope)).epsilon(0.01));
+    const double held = g * (std::sin(slope) - 0.3 * std::cos(slope));
+    CHECK(speed_of_slide(slope, Real(0.3)) == doctest::Approx(held).epsilon(0.03));
+    // tan 20 degrees is 0.364: three percent more friction holds it, and it stands.
+    CHECK(std::abs(speed_of_slide(slope, Real(0.375))) < 0.02);
+  }
+
+  TEST_CASE("four layers on the ground come to rest, one thickness apart") {
+    Room room;
     room.add_ground();
-    room.add_ball({0, 0.3, 0}, Real(0.12));
-    for (int stack = 0; stack < 2; ++stack) {
-      for (int layer = 0; layer < 2; ++layer) room.add(sheet(12, {0.7 * stack, 0.45 + 0.0075 * layer, 0}));
+    for (int layer = 0; layer < 4; ++layer)
+      room.add(sheet(16, {0.007 * layer, 0.003 + 0.0075 * layer, 0.005 * layer}));
+    CHECK(run(room, 300).crossing == 0);
+    double below = 0;
+    for (const Surface& surface : room.surfaces) {
+      const ClothId cloth = std::get<ClothId>(surface);
+      CHECK(rms_of(room.world.velocities(cloth)) < 0.01);
+      const double y = mean_of(room.world.positions(cloth)).y;
+      if (below > 0) CHECK(y - below == doctest::Approx(0.25 * 0.02).epsilon(0.2));
+      below = y;
     }
-    run(room, 30);
-    return room.world.state_hash();
-  };
-  for (const std::string& set : instruction_sets()) {
-    REQUIRE(use_instruction_set(set));
-    const std::uint64_t hash = hash_with(1);
-    if (expected == 0) expected = hash;
-    CHECK_MESSAGE(hash == expected, set);
   }
-  use_instruction_set("");
-  CHECK(hash_with(3) == expected);
-}
 
-TEST_CASE("a cloth that is thicker than half of its edges may not touch itself") {
-  Room room;
-  ClothDesc desc = sheet(8, {});
-  desc.thickness = kEdge;
-  const auto refused = room.world.add_cloth(desc);
-  REQUIRE(!refused);
-  CHECK(refused.error().where == "cloth.thickness");
-  desc.self_contact = false;
-  CHECK(room.world.add_cloth(desc));
-  desc.thickness = Real(0);
-  CHECK(!room.world.add_cloth(desc));
-  desc.thickness = Real(-1);
-  CHECK(!room.world.add_cloth(desc));
-}
+  TEST_CASE("filters keep cloths from touching, and a group that is positive makes them touch") {
+    const auto gap_after = [](FilterDesc filter) {
+      Room room;
+      room.add_ground();
+      for (int layer = 0; layer < 2; ++layer) {
+        ClothDesc desc = sheet(8, {0.003 * layer, 0.003 + 0.01 * layer, 0});
+        desc.filter = filter;
+        desc.self_contact = false;
+        room.add(desc);
+      }
+      run(room, 60);
+      return mean_of(room.world.positions(std::get<ClothId>(room.surfaces[1]))).y -
+             mean_of(room.world.positions(std::get<ClothId>(room.surfaces[0]))).y;
+    };
+    CHECK(gap_after({}) > 0.004);
+    CHECK(gap_after({.mask = 2}) < 0.001);
+    CHECK(gap_after({.group = -3}) < 0.001);
+    CHECK(gap_after({.mask = 2, .group = 3}) > 0.004);
+  }
 
-TEST_CASE("a point that is not a number is put back, and spoils no other") {
-  Room room = sheets_on_ball(8);
-  run(room, 5);
-  const ClothId cloth = std::get<ClothId>(room.surfaces[1]);
-  REQUIRE(room.world.apply_force(point(cloth, 20), {Real(1e6), Real(0), Real(0)}));
-  for (int i = 0; i < 30; ++i) room.world.step(kFrame);
-  for (const Surface& surface : room.surfaces) {
-    const PointView x = room.world.positions(std::get<ClothId>(surface));
-    for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(std::isfinite(dot(x[i], x[i])));
+  TEST_CASE("what is 100 m away changes no bit of sheets that touch") {
+    const auto heights = [](bool with_other) {
+      Room room = sheets_on_ball(10);
+      if (with_other) {
+        ClothDesc far = sheet(12, {100, 0.4, 0});
+        far.velocity = {Real(3), Real(5), Real(0)};
+        room.add(far);
+        far.corner.y += 0.05;
+        far.velocity = {};
+        room.add(far);
+      }
+      run(room, 60);
+      std::vector<DVec3> points;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const PointView x = room.world.positions(std::get<ClothId>(room.surfaces[i]));
+        for (std::size_t k = 0; k < x.size(); ++k) points.push_back(x[k]);
+      }
+      return points;
+    };
+    const std::vector<DVec3> alone = heights(false);
+    const std::vector<DVec3> together = heights(true);
+    REQUIRE(alone.size() == together.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) REQUIRE(length(alone[i] - together[i]) == 0);
+  }
+
+  TEST_CASE("a snapshot in the middle of contact goes on with the same bits") {
+    Room room = sheets_on_ball(12);
+    run(room, 20);
+    const Snapshot snapshot = room.world.snapshot();
+    run(room, 20);
+    const std::uint64_t hash = room.world.state_hash();
+    REQUIRE(room.world.restore(snapshot));
+    run(room, 20);
+    CHECK(room.world.state_hash() == hash);
+  }
+
+  TEST_CASE("every instruction set and number of workers gives the same bits") {
+    std::uint64_t expected = 0;
+    const auto hash_with = [](int workers) {
+      Room room = sheets_on_ball(12);
+      room.world = World::create({.substeps = 8, .workers = workers}).value();
+      room.surfaces.clear();
+      room.add_ground();
+      room.add_ball({0, 0.3, 0}, Real(0.12));
+      for (int stack = 0; stack < 2; ++stack) {
+        for (int layer = 0; layer < 2; ++layer) room.add(sheet(12, {0.7 * stack, 0.45 + 0.0075 * layer, 0}));
+      }
+      run(room, 30);
+      return room.world.state_hash();
+    };
+    for (const std::string& set : instruction_sets()) {
+      REQUIRE(use_instruction_set(set));
+      const std::uint64_t hash = hash_with(1);
+      if (expected == 0) expected = hash;
+      CHECK_MESSAGE(hash == expected, set);
+    }
+    use_instruction_set("");
+    CHECK(hash_with(3) == expected);
+  }
+
+  TEST_CASE("a cloth that is thicker than half of its edges may not touch itself") {
+    Room room;
+    ClothDesc desc = sheet(8, {});
+    desc.thickness = kEdge;
+    const auto refused = room.world.add_cloth(desc);
+    REQUIRE(!refused);
+    CHECK(refused.error().where == "cloth.thickness");
+    desc.self_contact = false;
+    CHECK(room.world.add_cloth(desc));
+    desc.thickness = Real(0);
+    CHECK(!room.world.add_cloth(desc));
+    desc.thickness = Real(-1);
+    CHECK(!room.world.add_cloth(desc));
+  }
+
+  TEST_CASE("a point that is not a number is put back, and spoils no other") {
+    Room room = sheets_on_ball(8);
+    run(room, 5);
+    const ClothId cloth = std::get<ClothId>(room.surfaces[1]);
+    REQUIRE(room.world.apply_force(point(cloth, 20), {Real(1e6), Real(0), Real(0)}));
+    for (int i = 0; i < 30; ++i) room.world.step(kFrame);
+    for (const Surface& surface : room.surfaces) {
+      const PointView x = room.world.positions(std::get<ClothId>(surface));
+      for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(std::isfinite(dot(x[i], x[i])));
+    }
   }
 }
-
-TEST_SUITE_END();
 
 }  // namespace hooke
