@@ -191,27 +191,7 @@ class SurfaceSearcher {
     push(0, 0);
     while (depth_ > 0) {
       const auto [a, b] = stack_[--depth_];
-      const SurfaceNode& node_a = s_.mesh_a->nodes[a];
-      const SurfaceNode& node_b = s_.mesh_b->nodes[b];
-      const bool leaf_a = node_a.left == SurfaceNode::kLeaf;
-      const bool leaf_b = node_b.left == SurfaceNode::kLeaf;
-      if (leaf_a && leaf_b) {
-        test_cells(node_a.right, node_b.right);
-      } else if (leaf_a) {
-        const unsigned bits = Tests::overlap_four(s_.boxes_a->nodes[a], s_.boxes_b->children[b]);
-        if ((bits & 2U) != 0) push(a, node_b.right);
-        if ((bits & 1U) != 0) push(a, node_b.left);
-      } else if (leaf_b) {
-        const unsigned bits = Tests::overlap_four(s_.boxes_b->nodes[b], s_.boxes_a->children[a]);
-        if ((bits & 2U) != 0) push(node_a.right, b);
-        if ((bits & 1U) != 0) push(node_a.left, b);
-      } else {
-        const unsigned bits = Tests::overlap_children(s_.boxes_a->children[a], s_.boxes_b->children[b]);
-        if ((bits & 8U) != 0) push(node_a.right, node_b.right);
-        if ((bits & 4U) != 0 && !(is_self_ && a == b)) push(node_a.right, node_b.left);
-        if ((bits & 2U) != 0) push(node_a.left, node_b.right);
-        if ((bits & 1U) != 0) push(node_a.left, node_b.left);
-      }
+      visit(a, b);
     }
     flush();
   }
@@ -232,6 +212,35 @@ class SurfaceSearcher {
 
   HWY_INLINE void push(std::uint32_t a, std::uint32_t b) { stack_[depth_++] = {a, b}; }
 
+  /// Goes on below two nodes that overlap.
+  HWY_INLINE void visit(std::uint32_t a, std::uint32_t b) {
+    const SurfaceNode& node_a = s_.mesh_a->nodes[a];
+    const SurfaceNode& node_b = s_.mesh_b->nodes[b];
+    const bool leaf_a = node_a.left == SurfaceNode::kLeaf;
+    const bool leaf_b = node_b.left == SurfaceNode::kLeaf;
+    if (leaf_a && leaf_b) return test_cells(node_a.right, node_b.right);
+    if (leaf_a) {
+      const unsigned bits = Tests::overlap_four(s_.boxes_a->nodes[a], s_.boxes_b->children[b]);
+      if ((bits & 2U) != 0) push(a, node_b.right);
+      if ((bits & 1U) != 0) push(a, node_b.left);
+    } else if (leaf_b) {
+      const unsigned bits = Tests::overlap_four(s_.boxes_b->nodes[b], s_.boxes_a->children[a]);
+      if ((bits & 2U) != 0) push(node_a.right, b);
+      if ((bits & 1U) != 0) push(node_a.left, b);
+    } else {
+      push_children(node_a, node_b, Tests::overlap_children(s_.boxes_a->children[a], s_.boxes_b->children[b]),
+                    is_self_ && a == b);
+    }
+  }
+
+  /// Of a node with itself, the right child with the left one is the left with the right.
+  HWY_INLINE void push_children(const SurfaceNode& a, const SurfaceNode& b, unsigned bits, bool same) {
+    if ((bits & 8U) != 0) push(a.right, b.right);
+    if ((bits & 4U) != 0 && !same) push(a.right, b.left);
+    if ((bits & 2U) != 0) push(a.left, b.right);
+    if ((bits & 1U) != 0) push(a.left, b.left);
+  }
+
   [[nodiscard]] HWY_INLINE bool are_joined(std::uint32_t a, std::uint32_t b) const {
     return s_.joined[a] == s_.joined[b];
   }
@@ -245,16 +254,24 @@ class SurfaceSearcher {
     batch.turned[i] = turned ? 1 : 0;
   }
 
-  HWY_INLINE void test_faces(const SurfaceMesh& m, const SurfaceBoxes& boxes_m, const SurfaceCell& a,
-                             const SurfaceMesh& n, const SurfaceBox4& triangles, const SurfaceCell& b,
-                             bool turned) {
+  /// A cell of one of the two surfaces.
+  struct Side {
+    const SurfaceMesh& mesh;
+    const SurfaceBoxes& boxes;
+    std::uint32_t cell;
+  };
+
+  /// Tests the vertices of one side with the triangles of the other; `turned` if those are of the first
+  /// surface.
+  HWY_INLINE void test_faces(const Side& points, const Side& faces, bool turned) {
+    const SurfaceCell& a = points.mesh.cells[points.cell];
+    const SurfaceCell& b = faces.mesh.cells[faces.cell];
     for (std::uint32_t i = a.first_vertex; i < a.end_vertex; ++i) {
-      unsigned bits = Tests::overlap_four(boxes_m.vertices[i], triangles);
-      if (bits == 0) continue;
-      const std::uint32_t v = m.vertices[i];
+      unsigned bits = Tests::overlap_four(points.boxes.vertices[i], faces.boxes.triangles[faces.cell]);
+      const std::uint32_t v = points.mesh.vertices[i];
       for (std::uint32_t j = b.first_triangle; bits != 0; ++j, bits >>= 1U) {
         if ((bits & 1U) == 0) continue;
-        const auto& [p, q, r] = n.triangles[j].vertex;
+        const auto& [p, q, r] = faces.mesh.triangles[j].vertex;
         if (are_joined(v, p) || are_joined(v, q) || are_joined(v, r)) continue;
         append(faces_, {v, p, q, r}, i, j, turned);
       }
@@ -282,9 +299,10 @@ class SurfaceSearcher {
     const SurfaceCell& cell_b = s_.mesh_b->cells[b];
     const bool same = is_self_ && a == b;
     if (std::max(faces_.count, edges_.count) + kMostOfPair > kRoom) flush();
-    test_faces(*s_.mesh_a, *s_.boxes_a, cell_a, *s_.mesh_b, s_.boxes_b->triangles[b], cell_b, false);
-    if (!same)
-      test_faces(*s_.mesh_b, *s_.boxes_b, cell_b, *s_.mesh_a, s_.boxes_a->triangles[a], cell_a, true);
+    const Side side_a = {*s_.mesh_a, *s_.boxes_a, a};
+    const Side side_b = {*s_.mesh_b, *s_.boxes_b, b};
+    test_faces(side_a, side_b, false);
+    if (!same) test_faces(side_b, side_a, true);
     test_edges(cell_a, cell_b, same);
   }
 
