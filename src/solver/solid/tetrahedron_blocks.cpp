@@ -15,6 +15,9 @@ namespace hooke::solver {
 
 namespace {
 
+/// Bodies that may hold points of a group before its list of them has to grow.
+constexpr std::size_t kLikelyHolders = 16;
+
 Real inverse_or_infinite(Real x) {
   return x > Real(0) ? Real(1) / x : std::numeric_limits<Real>::infinity();
 }
@@ -79,6 +82,7 @@ void build_tetrahedra(std::span<const state::Deformable> objects, const state::T
   out.volume_at.assign(points.count, Real(0));
   out.pressed_of.assign(points.count, 0);
   out.pressed.reserve(points.count);  // as many as there may be: a step allocates nothing
+  out.stiff.holders.reserve(kLikelyHolders);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (const std::uint32_t p : {corners[i].a, corners[i].b, corners[i].c, corners[i].d})
       out.volume_at[p - points.first] += t.volume[source.first + i];
