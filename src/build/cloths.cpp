@@ -373,6 +373,7 @@ Result<Surface> make_surface(const ClothDesc& desc, const state::Tables& tables)
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): one list of what belongs to the object.
 Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   Result<Surface> made = make_surface(desc, tables);
   if (!made) return made.error();

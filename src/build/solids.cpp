@@ -385,6 +385,7 @@ std::vector<Triangle> surface_triangles(const SolidBody& body) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): one list of what belongs to the object.
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   const Result<SolidBody> body = make_body(desc, tables);
   if (!body) return body.error();

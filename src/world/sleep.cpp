@@ -112,6 +112,16 @@ bool wake_by_particles(WorldData& world) {
   return any;
 }
 
+/// Lets no body rest that deformables push.
+void keep_pushed_awake(WorldData& world) {
+  state::Tables& t = world.tables;
+  if (t.contacts.particle.empty() && t.element_contacts.empty()) return;
+  find_pushes(world);
+  for (const std::uint32_t body : world.frame.awake) {
+    if (is_dynamic(t.bodies, body) && is_pushed(world, body)) t.bodies.rest_time[body] = Real(0);
+  }
+}
+
 /// Moves the pairs of bodies that woke from the sleeping pairs back to the pairs of the step.
 void take_pairs_back(WorldData& world) {
   state::Tables& t = world.tables;
@@ -171,12 +181,7 @@ void put_to_sleep(WorldData& world, Real dt) {
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
   }
-  if (!t.contacts.particle.empty() || !t.element_contacts.empty()) {
-    find_pushes(world);
-    for (const std::uint32_t body : world.frame.awake) {
-      if (is_dynamic(bodies, body) && is_pushed(world, body)) bodies.rest_time[body] = Real(0);
-    }
-  }
+  keep_pushed_awake(world);
   const bool any_rests =
       std::any_of(world.frame.awake.begin(), world.frame.awake.end(),
                   [&](std::uint32_t body) { return !(bodies.rest_time[body] < kRestTime); });

@@ -40,9 +40,10 @@ void count_rows(WorldData& world, StepReport& report) {
   for (const state::RopeContact& contact : tables.rope_contacts)
     report.contacts += contact.normal_force > Real(0) ? 1 : 0;
   world.frame.surfaces.for_groups([&](const solver::SurfaceGroup& group) {
-    for (const solver::SurfaceRowBlock& block : group.rows)
+    for (const solver::SurfaceRowBlock& block : group.rows) {
       report.contacts += static_cast<std::uint32_t>(
           std::count_if(block.pushed, block.pushed + block.count, [](Real p) { return p > Real(0); }));
+    }
   });
   report.contacts += tables.pairs.sleeping.contacts;
   for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);

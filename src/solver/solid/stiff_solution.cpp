@@ -184,6 +184,27 @@ double precondition(TetrahedronBlocks& tetrahedra) {
   return size + product(stiff.residual, stiff.image);
 }
 
+DVec3 slip_along(TetrahedronBlocks& tetrahedra, const PressedPoint& point) {
+  const HoldingBody* mover = mover_of(tetrahedra.stiff, point);
+  const DVec3 direction = at(tetrahedra.stiff.direction, point.particle - tetrahedra.first_particle);
+  return slip_of(point, direction, mover, mover != nullptr ? mover->direction : Six{});
+}
+
+/// Adds to the image of the direction what masses resist, and returns the work of all along it.
+double add_masses(TetrahedronBlocks& tetrahedra) {
+  StiffSolution& stiff = tetrahedra.stiff;
+  for (std::size_t i = 0; i < stiff.mass.size(); ++i)
+    set(at(stiff.image, i) + stiff.mass[i] * at(stiff.direction, i), i, stiff.image);
+  double curvature = product(stiff.direction, stiff.image);
+  for (const HoldingBody& body : stiff.holders)
+    curvature += product(body.direction, product(body.mass, body.direction));
+  for (const PressedPoint& point : tetrahedra.pressed) {
+    const DVec3 slip = slip_along(tetrahedra, point);
+    curvature += dot(slip, point.drag * slip);
+  }
+  return curvature;
+}
+
 }  // namespace
 
 void begin_stiff_solution(TetrahedronBlocks& tetrahedra) {
@@ -254,20 +275,7 @@ bool may_solve_again(const TetrahedronBlocks& tetrahedra) {
 
 void advance(TetrahedronBlocks& tetrahedra) {
   StiffSolution& stiff = tetrahedra.stiff;
-  for (std::size_t i = 0; i < stiff.mass.size(); ++i)
-    set(at(stiff.image, i) + stiff.mass[i] * at(stiff.direction, i), i, stiff.image);
-  double curvature = product(stiff.direction, stiff.image);
-  for (const HoldingBody& body : stiff.holders)
-    curvature += product(body.direction, product(body.mass, body.direction));
-  const auto slip_along = [&](const PressedPoint& point) {
-    const HoldingBody* mover = mover_of(stiff, point);
-    const DVec3 direction = at(stiff.direction, point.particle - tetrahedra.first_particle);
-    return slip_of(point, direction, mover, mover != nullptr ? mover->direction : Six{});
-  };
-  for (const PressedPoint& point : tetrahedra.pressed) {
-    const DVec3 slip = slip_along(point);
-    curvature += dot(slip, point.drag * slip);
-  }
+  const double curvature = add_masses(tetrahedra);
   ++stiff.solutions;
   if (!(curvature > 0)) {
     stiff.size = 0;
@@ -278,7 +286,8 @@ void advance(TetrahedronBlocks& tetrahedra) {
     stiff.change[i] += along * stiff.direction[i];
     stiff.residual[i] -= along * stiff.image[i];
   }
-  for (PressedPoint& point : tetrahedra.pressed) point.drag_lacks -= along * (point.drag * slip_along(point));
+  for (PressedPoint& point : tetrahedra.pressed)
+    point.drag_lacks -= along * (point.drag * slip_along(tetrahedra, point));
   for (HoldingBody& body : stiff.holders) {
     const Six image = product(body.mass, body.direction);
     for (std::size_t k = 0; k < 6; ++k) {

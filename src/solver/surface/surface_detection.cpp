@@ -99,6 +99,7 @@ SurfaceBox shrink(SurfaceBox box, Real by) {
 }
 
 /// Makes the boxes of all features and nodes; `by_vertex` is scratch memory.
+// NOLINTNEXTLINE(readability-function-size): one box after the other, each from those before.
 void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Real edge_reach,
                SurfaceBoxes& boxes) {
   boxes.by_vertex.resize(mesh.vertex_count);
@@ -110,9 +111,10 @@ void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Re
   boxes.vertices.resize(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) boxes.vertices[i] = at(mesh.vertices[i]);
   boxes.edges.resize(mesh.edges.size());
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i)
-    boxes.edges[i] =
-        shrink(join(at(mesh.edges[i].vertex[0]), at(mesh.edges[i].vertex[1])), reach - edge_reach);
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
+    const auto [a, b] = mesh.edges[i].vertex;
+    boxes.edges[i] = shrink(join(at(a), at(b)), reach - edge_reach);
+  }
   boxes.nodes.resize(mesh.nodes.size());
   boxes.children.resize(mesh.nodes.size());
   boxes.triangles.resize(mesh.cells.size());

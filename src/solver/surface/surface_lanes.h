@@ -427,6 +427,7 @@ class SurfaceSearcher {
 };
 
 template <class Number, int kFirstSide>
+// NOLINTNEXTLINE(readability-function-size): one loop over lanes, whose numbers stay in registers.
 HWY_INLINE bool measure_pair_blocks(std::span<SurfacePairBlock> blocks, Real slack,
                                     const state::PositionRecord* positions) {
   const auto* position = reinterpret_cast<const Real*>(positions);

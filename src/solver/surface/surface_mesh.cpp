@@ -284,11 +284,12 @@ void join_hooked(const state::Tables& t, std::span<const std::uint32_t> vertex_o
   for (const state::Hook& hook : t.hooks) {
     if (hook.broken || hook.kind == HookKind::kDistance || !hook.a.is_point() || !hook.b.is_point()) continue;
     std::uint32_t first = kNone;
-    for (const state::HookPlace* place : {&hook.a, &hook.b})
+    for (const state::HookPlace* place : {&hook.a, &hook.b}) {
       for_joined_particles(*place, vertex_of, [&](std::uint32_t particle) {
         if (first == kNone) first = particle;
         sets.merge(first, particle);
       });
+    }
   }
   surfaces.joined.resize(surfaces.particle.size());
   for (std::uint32_t i = 0; i < surfaces.joined.size(); ++i)
