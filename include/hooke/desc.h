@@ -161,12 +161,13 @@ enum class BodyKind : std::uint8_t {
   kDynamic,    ///< Forces and contacts.
 };
 
-/// Says which bodies collide. Two bodies of one group collide always if the group is positive, never if it is
-/// negative. All others collide if each is in a category that the other's mask has.
+/// Says which bodies collide, or which deformables. Two objects of one group collide always if the group is
+/// positive, never if it is negative. All others collide if each is in a category that the other's mask has.
+/// Bodies do not ask deformables, nor deformables bodies.
 struct FilterDesc {
-  std::uint32_t category = 1;       ///< Categories of the body, one per bit.
-  std::uint32_t mask = 0xFFFFFFFF;  ///< Categories that the body collides with, one per bit; all by default.
-  std::int32_t group = 0;           ///< Group of the body; 0 for none.
+  std::uint32_t category = 1;       ///< Categories of the object, one per bit.
+  std::uint32_t mask = 0xFFFFFFFF;  ///< Categories that it collides with, one per bit; all by default.
+  std::int32_t group = 0;           ///< Its group; 0 for none.
 };
 
 /// One shape of a body that has several.

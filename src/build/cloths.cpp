@@ -373,7 +373,6 @@ Result<Surface> make_surface(const ClothDesc& desc, const state::Tables& tables)
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): one list of what belongs to the object.
 Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   Result<Surface> made = make_surface(desc, tables);
   if (!made) return made.error();
@@ -397,13 +396,13 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
     if (!gas) return gas.error();
   }
   const Points points = make_points(surface, desc, area, share);
-  const Result<void> touches = set_surface({desc.thickness, desc.self_contact, desc.filter}, points,
-                                           surface.triangles, "cloth.thickness", filled);
-  if (!touches) return touches.error();
+  const auto contact = surface_for_contact({desc.thickness, desc.self_contact, desc.filter}, points,
+                                           surface.triangles, "cloth.thickness");
+  if (!contact) return contact.error();
   state::Deformable& object = append_object(PointRef::Kind::kCloth, points, desc.pins, tables);
   object.gas = filled.gas;
   object.gas_volume = filled.gas_volume;
-  take_surface(filled, object);
+  object.surface = contact.value();
   object.friction = desc.contact.friction;
   object.yield_angle = desc.yield_angle;
   object.columns = static_cast<std::uint32_t>(surface.columns);

@@ -121,9 +121,9 @@ void append_spring(const SpringRow& spring, state::Tables& tables) {
   ++object.springs.count;
 }
 
-Result<void> set_surface(const SurfaceDesc& desc, const Points& points,
-                         const std::vector<std::array<std::uint32_t, 3>>& triangles, const char* where,
-                         state::Deformable& object) {
+Result<state::Surface> surface_for_contact(const SurfaceDesc& desc, const Points& points,
+                                           const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                           const char* where) {
   const std::vector<DVec3>& x = points.position;
   double sum = 0;
   double shortest = std::numeric_limits<double>::infinity();
@@ -133,7 +133,7 @@ Result<void> set_surface(const SurfaceDesc& desc, const Points& points,
       shortest = std::min(shortest, edge);
     }
   }
-  if (triangles.empty()) return {};
+  if (triangles.empty()) return state::Surface{};
   const double mean = sum / (3 * static_cast<double>(triangles.size()));
   const auto thickness = static_cast<double>(desc.thickness);
   if (desc.self_contact && thickness > 0.5 * mean) {
@@ -143,13 +143,12 @@ Result<void> set_surface(const SurfaceDesc& desc, const Points& points,
   }
   auto rest = std::make_shared<std::vector<Vec3>>(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) (*rest)[points.row_of[i]] = vector_cast<Real>(x[i] - x[0]);
-  object.rest_points = std::move(rest);
-  object.self_contact = desc.self_contact;
-  object.filter = desc.filter;
-  object.surface_edge = static_cast<Real>(mean);
-  object.surface_radius = static_cast<Real>(0.5 * std::min(thickness, 0.5 * mean));
-  object.self_distance = static_cast<Real>(std::min(thickness, 0.5 * shortest));
-  return {};
+  return state::Surface{.rest_points = std::move(rest),
+                        .self_contact = desc.self_contact,
+                        .filter = desc.filter,
+                        .radius = static_cast<Real>(0.5 * std::min(thickness, 0.5 * mean)),
+                        .self_distance = static_cast<Real>(std::min(thickness, 0.5 * shortest)),
+                        .edge = static_cast<Real>(mean)};
 }
 
 }  // namespace hooke::build

@@ -64,21 +64,11 @@ struct SurfaceDesc {
   const FilterDesc& filter;
 };
 
-/// Sets how an object touches others and itself. `points` at rest and `triangles` are its surface. No
+/// Says how an object touches others and itself. `points` at rest and `triangles` are its surface. No
 /// surface keeps more than half of its mean edge from another, nor half of its shortest one from itself.
 /// Returns an Error of the field `where` if it touches itself and is thicker than half of its mean edge.
-Result<void> set_surface(const SurfaceDesc& desc, const Points& points,
-                         const std::vector<std::array<std::uint32_t, 3>>& triangles, const char* where,
-                         state::Deformable& object);
-
-/// Copies what set_surface has set.
-inline void take_surface(const state::Deformable& from, state::Deformable& to) {
-  to.rest_points = from.rest_points;
-  to.self_contact = from.self_contact;
-  to.filter = from.filter;
-  to.surface_radius = from.surface_radius;
-  to.self_distance = from.self_distance;
-  to.surface_edge = from.surface_edge;
-}
+Result<state::Surface> surface_for_contact(const SurfaceDesc& desc, const Points& points,
+                                           const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                           const char* where);
 
 }  // namespace hooke::build

@@ -385,7 +385,6 @@ std::vector<Triangle> surface_triangles(const SolidBody& body) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): one list of what belongs to the object.
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   const Result<SolidBody> body = make_body(desc, tables);
   if (!body) return body.error();
@@ -407,14 +406,13 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
     if (!made) return made.error();
     rest_shape = made.value();
   }
-  state::Deformable filled;
-  const Result<void> touches = set_surface({desc.thickness, desc.self_contact, desc.filter}, points,
-                                           surface_triangles(body.value()), "solid.thickness", filled);
-  if (!touches) return touches.error();
+  const auto contact = surface_for_contact({desc.thickness, desc.self_contact, desc.filter}, points,
+                                           surface_triangles(body.value()), "solid.thickness");
+  if (!contact) return contact.error();
   state::Deformable& object = append_object(PointRef::Kind::kSolid, points, desc.pins, tables);
   object.rest_shape = std::move(rest_shape);
   object.friction = desc.contact.friction;
-  take_surface(filled, object);
+  object.surface = contact.value();
   object.yield_stress = desc.yield_stress;
   if (desc.yield_stress < kRigid) object.rest_edges = rest_edges_of(mesh);
   object.skin = body.value().skin;

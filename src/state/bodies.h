@@ -211,7 +211,7 @@ inline Vec3 velocity_now(const Bodies& bodies, std::uint32_t body, Vec3 anchor) 
   return m.v + cross(bodies.scale[body] * m.omega_scaled, anchor);
 }
 
-/// Whether two bodies may collide by their FilterDesc.
+/// Whether two bodies, or two deformables, may collide by their FilterDesc.
 inline bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;

@@ -62,6 +62,18 @@ struct RestShape {
   double damping = 0;        ///< c over mass [1/s].
 };
 
+/// How a deformable touches others and itself (solver/surface). The three lengths follow from the description
+/// and the form at rest.
+struct Surface {
+  /// Positions at rest by row [m]: which parts are near each other. Set where there is a surface.
+  std::shared_ptr<const std::vector<Vec3>> rest_points = {};
+  bool self_contact = false;     ///< It touches itself.
+  FilterDesc filter = {};        ///< Which other deformables it touches.
+  Real radius = Real(0);         ///< Distance that it keeps, of the sum of two [m].
+  Real self_distance = Real(0);  ///< Distance that it keeps from itself [m].
+  Real edge = Real(0);           ///< Mean length of an edge at rest [m].
+};
+
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
@@ -96,17 +108,8 @@ struct Deformable {
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);
-  // The fields below belong to contacts with other deformables (solver/surface). The three lengths follow
-  // from the description and the form at rest.
-  /// Positions at rest by row [m]: which parts of the surface are near each other. Set where there is a
-  /// surface.
-  std::shared_ptr<const std::vector<Vec3>> rest_points = {};
-  bool self_contact = false;      ///< The object touches itself.
-  FilterDesc filter = {};         ///< Which other deformables it touches.
-  Real surface_radius = Real(0);  ///< Distance that its surface keeps, of the sum of two [m].
-  Real self_distance = Real(0);   ///< Distance that its surface keeps from itself [m].
-  Real surface_edge = Real(0);    ///< Mean length of an edge of its surface at rest [m].
-  bool points_drag = false;       ///< Some particle feels the air by itself: as a sphere, or by air friction.
+  Surface surface = {};      ///< How it touches other deformables and itself.
+  bool points_drag = false;  ///< Some particle feels the air by itself: as a sphere, or by air friction.
 
   [[nodiscard]] bool feels_air() const {
     return points_drag || drag_coefficient > Real(0) || lift_coefficient > Real(0);

@@ -72,12 +72,12 @@ void add_rest_form(StateHash& hash, const state::Deformable& object) {
 
 /// Adds what the description said of contacts with deformables, if it said anything.
 void add_surface(StateHash& hash, const state::Deformable& object) {
-  const FilterDesc& filter = object.filter;
+  const FilterDesc& filter = object.surface.filter;
   const FilterDesc usual = {};
-  if (!object.self_contact && filter.category == usual.category && filter.mask == usual.mask &&
+  if (!object.surface.self_contact && filter.category == usual.category && filter.mask == usual.mask &&
       filter.group == usual.group)
     return;
-  add(hash, object.self_contact, filter.category, filter.mask, filter.group);
+  add(hash, object.surface.self_contact, filter.category, filter.mask, filter.group);
 }
 
 void add_objects(StateHash& hash, const Tables& t) {

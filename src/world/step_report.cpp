@@ -21,9 +21,9 @@ void count_refused(WorldData& world, StepReport& report) {
   for (solver::CoupledGroup& group : world.derived.coupled_groups.groups)
     report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
   world.frame.surfaces.for_groups([&](const solver::SurfaceGroup& group) {
-    report.points_held_back += group.held_back;
-    report.surfaces_touching += group.uncertain;
-    report.surface_searches += group.searches;
+    report.points_held_back += group.counts.held_back;
+    report.surfaces_touching += group.counts.uncertain;
+    report.surface_searches += group.counts.searches;
   });
   for (solver::SoftGroup& group : world.derived.soft.groups)
     report.solids_unconverged += std::exchange(group.tetrahedra.stiff.unconverged, false) ? 1 : 0;

@@ -57,6 +57,11 @@ void for_contacts(const state::Contacts& contacts, const PressedPoint& point, Vi
     visit(row, bit);
 }
 
+/// The bit of a contact in the sets of its point.
+std::uint32_t bit_of(const PressedPoint& point, std::size_t row) {
+  return std::uint32_t{1} << (row - point.contact);
+}
+
 /// The normal, of unit length in double too: projections that are none to 1e-7 let a solution grow without
 /// bound where a contact pushes hard.
 DVec3 normal_of(const state::Contacts& contacts, std::size_t row) {
@@ -132,13 +137,11 @@ DVec3 surface_after(const state::Contacts& contacts, std::size_t row, const Tetr
   const HoldingBody* holder = tetrahedra.stiff.find_holder(contacts.body[row]);
   const auto before = vector_cast<double>(contacts.surface_velocity[row]);
   if (holder == nullptr) return before;
-  const HoldingBody::Six& y = holder->change;
-  return before + DVec3{y[0], y[1], y[2]} +
-         cross(DVec3{y[3], y[4], y[5]}, vector_cast<double>(contacts.lever[row]));
+  return before + velocity_at(holder->change, vector_cast<double>(contacts.lever[row]));
 }
 
 /// Lets go what does not hold a point, and takes hold where it would pass. Bodies do not pull, and friction
-/// has a limit. What was let go is not held again in the same substep, so that points do not flicker.
+/// has a limit. What was let go is held again one round later at the earliest, so that points do not flicker.
 void revise(const state::Tables& t, Real h, bool may_hold, const TetrahedronBlocks& tetrahedra,
             PressedPoint& point) {
   const state::Contacts& contacts = t.contacts;
@@ -210,20 +213,19 @@ void find_answer(const state::Tables& t, const std::vector<int>& shares, Real h,
   point.free = Symmetric3<double>::diagonal(1);
   point.start = point.others_start = {};
   const std::size_t holding = holding_contact(t, point);
-  for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
-    if (row != holding) return;
-    const bool sticks = (point.stuck & bit) != 0;
+  if (holding < contacts.particle.size()) {
+    const bool sticks = (point.stuck & bit_of(point, holding)) != 0;
     const bool is_dragged = point.drag.xx + point.drag.yy + point.drag.zz > 0;
-    const auto n = normal_of(contacts, row);
-    point.holder = contacts.body[row];
+    const auto n = normal_of(contacts, holding);
+    point.holder = contacts.body[holding];
     point.free = sticks ? Symmetric3<double>{} : across(n);
     point.follows = sticks || is_dragged ? Symmetric3<double>::diagonal(1)
                                          : Symmetric3<double>{n.x * n.x, n.x * n.y, n.x * n.z,
                                                               n.y * n.y, n.y * n.z, n.z * n.z};
-    point.lever = vector_cast<double>(contacts.lever[row]);
-    point.start = start_of(contacts, row, h, sticks, before);
-    point.sliding = before - vector_cast<double>(contacts.surface_velocity[row]);
-  });
+    point.lever = vector_cast<double>(contacts.lever[holding]);
+    point.start = start_of(contacts, holding, h, sticks, before);
+    point.sliding = before - vector_cast<double>(contacts.surface_velocity[holding]);
+  }
   for_contacts(contacts, point, [&](std::size_t row, std::uint32_t bit) {
     if ((point.held & bit) == 0 || row == holding) return;
     const bool sticks = (point.stuck & bit) != 0;
@@ -253,7 +255,7 @@ double share_of_body(const state::Tables& t, std::uint32_t body, const std::vect
   return own == 0 ? 1 : static_cast<double>(own) / shares[body];
 }
 
-/// Lists the bodies that hold points, with their shares of mass.
+/// Lists the bodies that hold points, with their shares of mass, and finds the one that moves each point.
 void list_holders(const state::Tables& t, const std::vector<int>& shares, Real h,
                   TetrahedronBlocks& tetrahedra) {
   std::vector<HoldingBody>& holders = tetrahedra.stiff.holders;
@@ -275,6 +277,11 @@ void list_holders(const state::Tables& t, const std::vector<int>& shares, Real h
       }
     }
     holders.push_back(body);
+  }
+  for (PressedPoint& point : tetrahedra.pressed) {
+    const HoldingBody* holder = tetrahedra.stiff.find_holder(point.holder);
+    const bool moves = holder != nullptr && holder->moves;
+    point.mover = moves ? static_cast<std::uint32_t>(holder - holders.data()) : PressedPoint::kNone;
   }
 }
 
@@ -426,8 +433,7 @@ void settle_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables&
         v - velocity_now(t.bodies, point.holder, contacts.lever[row]) - contacts.belt_velocity[row];
     const Real along = dot(n, relative);
     Vec3 change = (-along - std::max(contacts.separation[row], Real(0)) / h) * n;
-    const std::uint32_t bit = std::uint32_t{1} << (row - point.contact);
-    if ((point.stuck & bit) != 0) change -= relative - along * n;
+    if ((point.stuck & bit_of(point, row)) != 0) change -= relative - along * n;
     v += change;
     push_body(point.holder, (Real(-1) / point.inverse_mass) * change, contacts.lever[row], t.bodies);
   }

@@ -38,10 +38,6 @@ Six product(const std::array<Six, 6>& m, const Six& v) {
   return result;
 }
 
-/// The velocity at a lever of a body that moves by `motion`.
-DVec3 velocity_at(const Six& motion, DVec3 lever) {
-  return DVec3{motion[0], motion[1], motion[2]} + cross(DVec3{motion[3], motion[4], motion[5]}, lever);
-}
 /// Adds an impulse at a lever.
 void add_impulse(DVec3 impulse, DVec3 lever, Six& to) {
   const DVec3 angular = cross(lever, impulse);
@@ -123,8 +119,7 @@ Symmetric3<double> inverse_within(const PressedPoint& point, const Symmetric3<do
 
 /// The body that moves a point, null if there is none.
 HoldingBody* mover_of(StiffSolution& stiff, const PressedPoint& point) {
-  HoldingBody* holder = stiff.find_holder(point.holder);
-  return holder != nullptr && holder->moves ? holder : nullptr;
+  return point.mover == PressedPoint::kNone ? nullptr : &stiff.holders[point.mover];
 }
 
 /// The part of a change or a direction by which a point slides.

@@ -77,8 +77,9 @@ struct PressedPoint {
   std::size_t contact = 0;       ///< Row of its first contact.
   std::uint32_t held = 0;        ///< Bit i: contact i holds it along the normal.
   std::uint32_t stuck = 0;       ///< Bit i: contact i holds it across the normal, too.
-  std::uint32_t let_go = 0;      ///< Bit i: contact i has let it go in this substep.
+  std::uint32_t let_go = 0;      ///< Bit i: contact i has let it go, and does not hold it in the next round.
   std::uint32_t holder = kNone;  ///< Body of a contact that holds it.
+  std::uint32_t mover = kNone;   ///< That body in StiffSolution::holders, if it gives way.
   /// The projection on the directions in which it follows the motion of its holder; 0 where nothing holds it.
   math::Symmetric3<double> follows = {};
   /// The projection on those in which it moves by itself. Where friction drags it, it does both.
@@ -112,6 +113,11 @@ struct HoldingBody {
   Six direction = {};
   Six wanted = {};  ///< What the residual asks for.
 };
+
+/// The velocity at a lever [m] of a body that moves by the six numbers `motion`.
+inline DVec3 velocity_at(const HoldingBody::Six& motion, DVec3 lever) {
+  return DVec3{motion[0], motion[1], motion[2]} + cross(DVec3{motion[3], motion[4], motion[5]}, lever);
+}
 
 /// A solution of all rows of a group at once, see solver/solid/stiff_solution.h. Vectors have four numbers
 /// for each particle, counted from TetrahedronBlocks::first_particle, of which the last is 0.

@@ -15,7 +15,7 @@ namespace {
 bool may_touch(const state::Tables& t, const SurfaceMeshes& surfaces) {
   return surfaces.meshes.size() > 1 ||
          std::any_of(surfaces.meshes.begin(), surfaces.meshes.end(),
-                     [&](const SurfaceMesh& mesh) { return t.objects[mesh.object].self_contact; });
+                     [&](const SurfaceMesh& mesh) { return t.objects[mesh.object].surface.self_contact; });
 }
 
 template <class Work>
@@ -38,7 +38,7 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   contacts.active = may_touch(tables, contacts.surfaces);
   contacts.for_groups([](SurfaceGroup& group) {
     group.known = false;
-    group.searches = group.held_back = group.clipped = group.corrections = group.uncertain = 0;
+    group.counts = {};
   });
   contacts.regroup = true;
   contacts.substeps_left = substeps;

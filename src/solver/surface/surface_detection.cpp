@@ -23,7 +23,7 @@ void place_vertices(const state::Tables& t, SurfaceContacts& c, SurfaceGroup& gr
   group.held = false;
   for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
     const Vec3 x = c.start[vertex].x + c.shift[mesh];
-    c.found_at[vertex] = c.position[vertex] = {x, t.objects[c.surfaces.meshes[mesh].object].surface_radius};
+    c.found_at[vertex] = c.position[vertex] = {x, t.objects[c.surfaces.meshes[mesh].object].surface.radius};
     c.velocity[vertex] = t.particles.velocity[c.surfaces.particle[vertex]];
     largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
     group.held = group.held || c.velocity[vertex].inverse_mass == Real(0);
@@ -37,7 +37,7 @@ Real displacement_of_fast_points(const state::Tables& t, const SurfaceContacts& 
                                  SurfaceGroup& group) {
   group.speeds.clear();
   for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
-    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface_edge;
+    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface.edge;
     const Real displacement = length(c.velocity[vertex].v - mean) * h / edge;
     group.speeds.push_back(is_finite(c.velocity[vertex].v) ? displacement : Real(0));
   });
@@ -58,7 +58,7 @@ void make_cages(const state::Tables& t, Real h, SurfaceContacts& c, SurfaceGroup
       std::min(Real(1), displacement * static_cast<Real>(group.substeps_left) / kCalmDisplacement);
   const Real share = kCalmRoom + (kRoom - kCalmRoom) * moving;
   for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
-    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface_edge;
+    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface.edge;
     const Vec3 drift = time * (c.velocity[vertex].v - mean);
     Real room = share * edge;
     if (group.substeps_left > 1) room = std::min(room + kCageDisplacement * length(drift), kMostRoom * edge);
@@ -98,8 +98,34 @@ SurfaceBox shrink(SurfaceBox box, Real by) {
   return box;
 }
 
+/// Makes the boxes of the triangles of a cell, in its lanes, and of its edges in their groups. Returns that
+/// of the cell.
+SurfaceBox fit_cell(const SurfaceMesh& mesh, std::uint32_t number, SurfaceBoxes& boxes) {
+  const SurfaceCell& cell = mesh.cells[number];
+  const auto at = [&](std::uint32_t vertex) -> const SurfaceBox& {
+    return boxes.by_vertex[vertex - mesh.first_vertex];
+  };
+  SurfaceBox box = SurfaceBox4::none();
+  for (std::uint32_t lane = 0; lane < 4; ++lane) {
+    const std::uint32_t triangle = cell.first_triangle + lane;
+    SurfaceBox one = SurfaceBox4::none();
+    if (triangle < cell.end_triangle) {
+      const auto& [p, q, r] = mesh.triangles[triangle].vertex;
+      one = join(join(at(p), at(q)), at(r));
+      box = lane == 0 ? one : join(box, one);
+    }
+    boxes.triangles[number].set(lane, one);
+  }
+  const std::uint32_t count = (cell.end_edge - cell.first_edge + 3) / 4 * 4;
+  for (std::uint32_t lane = 0; lane < count; ++lane) {
+    const std::uint32_t edge = cell.first_edge + lane;
+    boxes.edge_groups[cell.first_group + lane / 4].set(
+        lane % 4, edge < cell.end_edge ? boxes.edges[edge] : SurfaceBox4::none());
+  }
+  return box;
+}
+
 /// Makes the boxes of all features and nodes; `by_vertex` is scratch memory.
-// NOLINTNEXTLINE(readability-function-size): one box after the other, each from those before.
 void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Real edge_reach,
                SurfaceBoxes& boxes) {
   boxes.by_vertex.resize(mesh.vertex_count);
@@ -121,31 +147,13 @@ void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Re
   boxes.edge_groups.resize(mesh.edge_groups);
   for (std::size_t i = mesh.nodes.size(); i-- > 0;) {
     const SurfaceNode& node = mesh.nodes[i];
-    if (node.left != SurfaceNode::kLeaf) {
-      for (std::size_t lane = 0; lane < 4; ++lane)
-        boxes.children[i].set(lane, boxes.nodes[lane % 2 == 0 ? node.left : node.right]);
-      boxes.nodes[i] = join(boxes.nodes[node.left], boxes.nodes[node.right]);
+    if (node.left == SurfaceNode::kLeaf) {
+      boxes.nodes[i] = fit_cell(mesh, node.right, boxes);
       continue;
     }
-    const SurfaceCell& cell = mesh.cells[node.right];
-    SurfaceBox box = SurfaceBox4::none();
-    for (std::uint32_t lane = 0; lane < 4; ++lane) {
-      const std::uint32_t triangle = cell.first_triangle + lane;
-      SurfaceBox one = SurfaceBox4::none();
-      if (triangle < cell.end_triangle) {
-        const auto& [p, q, r] = mesh.triangles[triangle].vertex;
-        one = join(join(at(p), at(q)), at(r));
-        box = lane == 0 ? one : join(box, one);
-      }
-      boxes.triangles[node.right].set(lane, one);
-    }
-    boxes.nodes[i] = box;
-    const std::uint32_t count = (cell.end_edge - cell.first_edge + 3) / 4 * 4;
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const std::uint32_t edge = cell.first_edge + lane;
-      boxes.edge_groups[cell.first_group + lane / 4].set(
-          lane % 4, edge < cell.end_edge ? boxes.edges[edge] : SurfaceBox4::none());
-    }
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      boxes.children[i].set(lane, boxes.nodes[lane % 2 == 0 ? node.left : node.right]);
+    boxes.nodes[i] = join(boxes.nodes[node.left], boxes.nodes[node.right]);
   }
 }
 
@@ -159,8 +167,8 @@ class RowMaker {
 
   /// Distance that two surfaces keep, or one from itself.
   [[nodiscard]] Real distance_of(std::uint32_t mesh_a, std::uint32_t mesh_b) const {
-    if (mesh_a == mesh_b) return object(mesh_a).self_distance;
-    return object(mesh_a).surface_radius + object(mesh_b).surface_radius;
+    if (mesh_a == mesh_b) return object(mesh_a).surface.self_distance;
+    return object(mesh_a).surface.radius + object(mesh_b).surface.radius;
   }
 
   void take(const SurfaceFound& found) {
@@ -195,7 +203,7 @@ class RowMaker {
       }
       return false;
     }
-    ++group_.uncertain;
+    ++group_.counts.uncertain;
     if (found.is_edges) return false;
     const auto& [p, a, b, q] = found.vertex;
     const Vec3 face = cross(x(b) - x(a), x(q) - x(a));
@@ -219,7 +227,7 @@ class RowMaker {
       block.normal[0][lane] = found.normal.x;
       block.normal[1][lane] = found.normal.y;
       block.normal[2][lane] = found.normal.z;
-      block.gap[lane] = block.now[lane] = found.gap;
+      block.now[lane] = found.gap;
       block.most[lane] = kKeptShare * distance_of(found);
     }
     ++block.count;
@@ -323,9 +331,9 @@ void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& c
   group.face_pairs.clear();
   group.edge_pairs.clear();
   group.known = true;
-  ++group.searches;
+  ++group.counts.searches;
   const auto radius = [&](std::uint32_t mesh) {
-    return tables.objects[contacts.surfaces.meshes[mesh].object].surface_radius;
+    return tables.objects[contacts.surfaces.meshes[mesh].object].surface.radius;
   };
   RowMaker maker(tables, contacts, group);
   for (const std::uint32_t i : group.meshes) {

@@ -1,6 +1,7 @@
 #include "solver/surface/surface_groups.h"
 
 #include "solver/surface/surface_tuning.h"
+#include "state/bodies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,45 +11,24 @@ namespace hooke::solver {
 
 namespace {
 
-DVec3 smaller(DVec3 a, DVec3 b) {
-  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
-}
-DVec3 larger(DVec3 a, DVec3 b) {
-  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
-
-bool contains(const SurfaceBounds& outer, const SurfaceBounds& inner) {
-  const DVec3 lower = smaller(outer.lower, inner.lower);
-  const DVec3 upper = larger(outer.upper, inner.upper);
-  return lower.x == outer.lower.x && lower.y == outer.lower.y && lower.z == outer.lower.z &&
-         upper.x == outer.upper.x && upper.y == outer.upper.y && upper.z == outer.upper.z;
-}
-
-bool overlap(const SurfaceBounds& a, const SurfaceBounds& b) {
-  return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
-         b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
-}
+using geometry::Box;
+using geometry::Box3;
 
 /// The box of a surface's vertices and their displacement within `time` [s].
 struct Path {
-  Vec3 lower = {}, upper = {};
+  Box box;
   Real fastest = Real(0);
 };
 
 Path path_of(const state::Tables& t, const SurfaceContacts& contacts, const SurfaceMesh& mesh, Real time) {
   Path path;
-  bool first = true;
   Real fastest = Real(0);
   for (std::uint32_t i = mesh.first_vertex; i < mesh.end_vertex(); ++i) {
     const std::uint32_t particle = contacts.surfaces.particle[i];
     const Vec3 x = t.particles.position[particle].x;
     const Vec3 v = t.particles.velocity[particle].v;
     for (const Vec3 p : {x, x + time * v, contacts.start[i].x}) {
-      if (!is_finite(p)) continue;  // It is quarantined when the step ends.
-      if (first) path.lower = path.upper = p;
-      first = false;
-      path.lower = {std::min(path.lower.x, p.x), std::min(path.lower.y, p.y), std::min(path.lower.z, p.z)};
-      path.upper = {std::max(path.upper.x, p.x), std::max(path.upper.y, p.y), std::max(path.upper.z, p.z)};
+      if (is_finite(p)) path.box = merge(path.box, {p, p});  // Others are quarantined when the step ends.
     }
     if (is_finite(v)) fastest = std::max(fastest, length_squared(v));
   }
@@ -56,15 +36,10 @@ Path path_of(const state::Tables& t, const SurfaceContacts& contacts, const Surf
   return path;
 }
 
-SurfaceBounds bounds_of(const Path& path, DVec3 origin, Real room) {
+Box3<double> bounds_of(const Path& path, DVec3 origin, Real room) {
   const auto r = static_cast<double>(room);
-  return {origin + vector_cast<double>(path.lower) - DVec3{r, r, r},
-          origin + vector_cast<double>(path.upper) + DVec3{r, r, r}};
-}
-
-bool may_touch(const FilterDesc& a, const FilterDesc& b) {
-  if (a.group != 0 && a.group == b.group) return a.group > 0;
-  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+  return {origin + vector_cast<double>(path.box.lower) - DVec3{r, r, r},
+          origin + vector_cast<double>(path.box.upper) + DVec3{r, r, r}};
 }
 
 /// Makes the bounds of surfaces anew that left theirs, or of all. Returns whether there were any.
@@ -75,13 +50,13 @@ bool refresh_bounds(const state::Tables& t, Real h, SurfaceContacts& contacts) {
   for (std::uint32_t i = 0; i < contacts.surfaces.meshes.size(); ++i) {
     const SurfaceMesh& mesh = contacts.surfaces.meshes[i];
     const state::Deformable& object = t.objects[mesh.object];
-    const Real reach = Real(1.5) * object.surface_radius;
+    const Real reach = Real(1.5) * object.surface.radius;
     if (!contacts.regroup) {
       const Path path = path_of(t, contacts, mesh, h);
       if (contains(contacts.bounds[i], bounds_of(path, object.origin, reach))) continue;
     }
     const Path path = path_of(t, contacts, mesh, time);
-    const Real room = reach + kCageDisplacement * (object.surface_edge + path.fastest * time) + fall;
+    const Real room = reach + kCageDisplacement * (object.surface.edge + path.fastest * time) + fall;
     contacts.bounds[i] = bounds_of(path, object.origin, room);
     any = true;
   }
@@ -101,12 +76,12 @@ void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::uint32_t a = order[i];
     const state::Deformable& object = t.objects[meshes[a].object];
-    if (object.self_contact) contacts.next_pairs.push_back({a, a});
+    if (object.surface.self_contact) contacts.next_pairs.push_back({a, a});
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const std::uint32_t b = order[j];
       if (contacts.bounds[b].lower.x > contacts.bounds[a].upper.x) break;
       if (!overlap(contacts.bounds[a], contacts.bounds[b])) continue;
-      if (!may_touch(object.filter, t.objects[meshes[b].object].filter)) continue;
+      if (!state::filters_agree(object.surface.filter, t.objects[meshes[b].object].surface.filter)) continue;
       contacts.next_pairs.push_back({std::min(a, b), std::max(a, b)});
     }
   }
@@ -140,7 +115,7 @@ void make_groups(SurfaceContacts& contacts) {
       group.meshes.clear();
       group.pairs.clear();
       group.known = false;
-      group.searches = group.held_back = group.clipped = group.corrections = group.uncertain = 0;
+      group.counts = {};
     }
     contacts.next_groups[number].pairs.push_back({a, b});
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/disjoint_sets.h"
+#include "geometry/box.h"
 #include "solver/surface/surface_mesh.h"
 #include "solver/surface/surface_records.h"
 
@@ -9,6 +10,13 @@
 #include <vector>
 
 namespace hooke::solver {
+
+/// What a group counts in a step.
+struct SurfaceCounts {
+  std::uint32_t searches = 0;   ///< How often contacts were found.
+  std::uint32_t held_back = 0;  ///< Vertices that were held back, in all substeps.
+  std::uint32_t uncertain = 0;  ///< Pairs that touched or crossed when they were found.
+};
 
 /// Surfaces that may touch each other, one or more, with what was found between them. Groups share no
 /// particle, and what one does has no influence on another.
@@ -28,25 +36,16 @@ struct SurfaceGroup {
   std::vector<SurfaceFound> found;  ///< Scratch memory.
   std::vector<std::uint32_t> hot;   ///< Scratch memory: pairs that are corrected.
   std::vector<Real> speeds;         ///< Scratch memory.
-  std::uint32_t searches = 0;       ///< How often contacts were found in this step.
-  std::uint32_t held_back = 0;      ///< Vertices that were held back in this step, in all substeps.
-  std::uint32_t clipped = 0;        ///< Vertices that were clipped to their cages.
-  std::uint32_t corrections = 0;    ///< Corrections of pairs.
-  std::uint32_t uncertain = 0;      ///< Pairs that touched or crossed when they were found.
-};
-
-/// Where a surface is expected to stay until the step ends.
-struct SurfaceBounds {
-  DVec3 lower = {}, upper = {};  ///< [m]
+  SurfaceCounts counts;
 };
 
 /// All contacts of surfaces. Nothing of it lives from step to step but memory.
 struct SurfaceContacts {
   SurfaceMeshes surfaces;
-  bool active = false;                ///< Some surface may touch another, or itself.
-  std::vector<SurfaceBounds> bounds;  ///< By mesh.
-  std::vector<SurfaceBoxes> boxes;    ///< By mesh.
-  std::vector<Vec3> shift;            ///< By mesh: from its object's origin to that of its group [m].
+  bool active = false;                         ///< Some surface may touch another, or itself.
+  std::vector<geometry::Box3<double>> bounds;  ///< By mesh: where it stays until the step ends [m].
+  std::vector<SurfaceBoxes> boxes;             ///< By mesh.
+  std::vector<Vec3> shift;  ///< By mesh: from its object's origin to that of its group [m].
   std::vector<state::PositionRecord>
       start;  ///< By vertex: where it began the substep, from its object's origin.
   std::vector<state::PositionRecord> position;  ///< By vertex: where it is, from its group's origin.

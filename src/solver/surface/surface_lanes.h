@@ -426,25 +426,30 @@ class SurfaceSearcher {
   int depth_ = 0;
 };
 
+/// How far apart pairs are along their normals, from the nearest vertices of both sides.
 template <class Number, int kFirstSide>
-// NOLINTNEXTLINE(readability-function-size): one loop over lanes, whose numbers stay in registers.
+HWY_INLINE Number distance_now(const SurfacePairBlock& block, int lane, const Real* position) {
+  const Triple<Number> n = get3<Number>(block.normal, lane);
+  Number first(Real(0)), second(Real(0));
+  for (int k = 0; k < 4; ++k) {
+    const Number at = dot(n, position_at<Number>(position, block.record[k] + lane));
+    if (k < kFirstSide) {
+      first = k == 0 ? at : smaller(first, at);
+    } else {
+      second = k == kFirstSide ? at : larger(second, at);
+    }
+  }
+  return first - second;
+}
+
+template <class Number, int kFirstSide>
 HWY_INLINE bool measure_pair_blocks(std::span<SurfacePairBlock> blocks, Real slack,
                                     const state::PositionRecord* positions) {
   const auto* position = reinterpret_cast<const Real*>(positions);
   bool any_near = false;
   for (SurfacePairBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kLanesOf<Number>) {
-      const Triple<Number> n = get3<Number>(block.normal, lane);
-      Number first(Real(0)), second(Real(0));
-      for (int k = 0; k < 4; ++k) {
-        const Number at = dot(n, position_at<Number>(position, block.record[k] + lane));
-        if (k < kFirstSide) {
-          first = k == 0 ? at : smaller(first, at);
-        } else {
-          second = k == kFirstSide ? at : larger(second, at);
-        }
-      }
-      const Number now = first - second;
+      const Number now = distance_now<Number, kFirstSide>(block, lane, position);
       write(now, block.now + lane);
       const Number least = get<Number>(block.least + lane) + Number(slack);
       any_near = any(above(least, now)) || any_near;

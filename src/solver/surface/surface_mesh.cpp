@@ -240,7 +240,7 @@ class MeshBuilder {
 void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::uint32_t>& vertex_of,
                     SurfaceMeshes& surfaces) {
   std::vector<Triangle> triangles = triangles_of(t, t.objects[row]);
-  if (triangles.empty() || !t.objects[row].rest_points) return;
+  if (triangles.empty() || !t.objects[row].surface.rest_points) return;
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();
   mesh.object = row;
   mesh.first_vertex = static_cast<std::uint32_t>(surfaces.particle.size());
@@ -260,7 +260,7 @@ void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::
   const std::uint32_t count = static_cast<std::uint32_t>(surfaces.particle.size()) - mesh.first_vertex;
   std::vector<Vec3> rest;
   for (std::uint32_t i = mesh.first_vertex; i < mesh.first_vertex + count; ++i)
-    rest.push_back((*t.objects[row].rest_points)[surfaces.particle[i] - rows.first]);
+    rest.push_back((*t.objects[row].surface.rest_points)[surfaces.particle[i] - rows.first]);
   MeshBuilder(triangles, rest).build(mesh);
 }
 

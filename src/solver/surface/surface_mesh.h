@@ -11,8 +11,8 @@
 
 /// \file
 /// The surfaces of deformables, as contacts between them see them: the triangles of a cloth and the outer
-/// faces of a solid, with their edges and vertices. All of it follows from what rows join and from no
-/// position, so that a World that was restored makes the same again, in the same order.
+/// faces of a solid, with their edges and vertices. All of it follows from what rows join and
+/// from the form at rest, so that a World that was restored makes the same again, in the same order.
 
 namespace hooke::solver {
 

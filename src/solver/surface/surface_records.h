@@ -110,7 +110,6 @@ struct alignas(64) SurfaceRowBlock {
 struct alignas(64) SurfacePairBlock {
   std::uint32_t record[4][kLanes] = {};  ///< Four times the vertices; unused lanes repeat the first one.
   Real normal[3][kLanes] = {};
-  Real gap[kLanes] = {};    ///< Distance along the normal when the substep began [m].
   Real most[kLanes] = {};   ///< Distance that is kept for certain where there is room for it [m].
   Real least[kLanes] = {};  ///< Distance that is kept for certain in this substep [m].
   Real now[kLanes] = {};    ///< Distance at the positions looked at last [m].

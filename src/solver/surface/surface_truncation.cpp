@@ -58,7 +58,6 @@ class Truncation {
       Vec3 clipped = displacement;
       if (!clip_to_cage(c_.cage[vertex], clipped)) return;
       move(vertex, clipped - displacement);
-      ++group_.clipped;
     });
   }
 
@@ -66,10 +65,8 @@ class Truncation {
     const Real certain = Real(3) * group_.reserve;
     for (auto* blocks : {&group_.face_pairs, &group_.edge_pairs}) {
       for (SurfacePairBlock& block : *blocks) {
-        for (int lane = 0; lane < kLanes; ++lane) {
-          block.gap[lane] = block.now[lane];
-          block.least[lane] = std::max(certain, std::min(block.most[lane], kKeptOfGap * block.gap[lane]));
-        }
+        for (int lane = 0; lane < kLanes; ++lane)
+          block.least[lane] = std::max(certain, std::min(block.most[lane], kKeptOfGap * block.now[lane]));
       }
     }
   }
@@ -174,7 +171,6 @@ class Truncation {
       const Vec3 by = (missing / (first + second)) * pair.normal();
       if (first > Real(0)) correct(critical.first, first * by);
       if (second > Real(0)) correct(critical.second, -second * by);
-      ++group_.corrections;
     }
     return true;
   }
@@ -203,7 +199,7 @@ class Truncation {
   bool stay(std::uint32_t vertex) {
     if (c_.stays[vertex] != 0) return false;
     c_.stays[vertex] = 1;
-    ++group_.held_back;
+    ++group_.counts.held_back;
     const std::uint32_t particle = c_.surfaces.particle[vertex];
     const Vec3 before = particles_.position[particle].x;
     move(vertex, c_.start[vertex].x + group_.displacement_now - before);
