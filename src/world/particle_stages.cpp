@@ -9,6 +9,7 @@
 #include "solver/soft/spring_solve.h"
 #include "solver/solid/stiff_solution.h"
 #include "solver/solid/tetrahedron_solve.h"
+#include "solver/surface/joined_solids.h"
 #include "solver/surface/surface_contacts.h"
 #include "state/check_tables.h"
 #include "world/force_stages.h"
@@ -104,24 +105,42 @@ bool is_stiff(const solver::SoftGroup& group) {
              [&](const solver::TetrahedronYield& yield) { return group.tetrahedra.is_stiff(yield.lane); });
 }
 
-/// Solves the rows of a group at once, with the masses that press on its points. What does not stay where it
-/// touches is let go, and the solution goes on from there.
+/// Solves the rows of solids at once, with what presses on their points and with each other. What does not
+/// stay where it touches is let go, and the solution goes on from there.
 void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing, Real h, Division division,
-                        solver::TetrahedronBlocks& tetrahedra) {
+                        solver::StiffSystem system) {
+  const bool is_one = system.parts.size() == 1;
   const auto pass = [&](auto solve) {
-    solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solve);
+    if (is_one) return solve_passes(*system.parts[0], division, kTetrahedronGrain, tables.particles, solve);
+    division.for_rows(0, static_cast<int>(system.parts.size()), 1, [&](Range range) {
+      for (int i = range.begin; i < range.end; ++i)
+        solve_passes(*system.parts[i], Division{}, kTetrahedronGrain, tables.particles, solve);
+    });
   };
-  solver::begin_stiff_solution(tetrahedra);
-  solver::note_pressed_points(tables, pressing, h, tetrahedra);
-  pass(solver::linearize_tetrahedra);
-  for (int round = 1;; ++round) {
-    solver::solve_for_change(tetrahedra, tables.particles, pass);
-    solver::find_pressed_impulses(tetrahedra);
-    if (round == 2 * solver::kMostPressedRounds || !solver::may_solve_again(tetrahedra)) break;
-    const bool may_hold = round < solver::kMostPressedRounds;
-    if (!solver::renew_pressed_points(pressing, tables, h, may_hold, tetrahedra)) break;
+  for (solver::TetrahedronBlocks* part : system.parts) {
+    solver::begin_stiff_solution(*part);
+    solver::note_pressed_points(tables, pressing, h, *part);
   }
-  solver::finish_stiff_solution(tetrahedra, tables.particles);
+  pass(solver::linearize_tetrahedra);
+  solver::prepare_stiff_rows(tables.particles, system);
+  solver::prepare_ties(tables, system);
+  bool is_last = false;
+  for (int round = 1;; ++round) {
+    solver::solve_for_change(tables.particles, system, pass);
+    for (solver::TetrahedronBlocks* part : system.parts) solver::find_pressed_impulses(*part);
+    if (is_last || round == 2 * solver::kMostPressedRounds) break;
+    // Where directions run out, contacts that pull or rub too hard are let go once more.
+    is_last = !solver::may_solve_again(system);
+    const bool may_hold = !is_last && round < solver::kMostPressedRounds;
+    bool any = solver::renew_stiff_rows(may_hold, system);
+    any = solver::renew_ties(system) || any;
+    for (solver::TetrahedronBlocks* part : system.parts)
+      any = solver::renew_pressed_points(pressing, tables, h, may_hold, *part) || any;
+    if (!solver::sharpen(system) && !any) break;
+  }
+  for (solver::TetrahedronBlocks* part : system.parts)
+    solver::finish_stiff_solution(solver::is_solved(system), *part, tables.particles);
+  solver::release_ties(system, tables.particles);
 }
 
 /// Calls `kernel` for each solid that is solved by shape matching.
@@ -243,6 +262,7 @@ void prepare_particle_rows(WorldData& world, Real h) {
 
 void begin_step(WorldData& world, double dt) {
   state::Tables& tables = world.tables;
+  solver::mark_stiff_solids(world.derived.soft, tables.objects.size(), world.frame.surfaces);
   solver::begin_surface_step(tables, tables.desc.substeps * tables.desc.particle_substeps,
                              world.frame.surfaces);
   read_wind(world, tables.time + 0.5 * dt);
@@ -335,11 +355,16 @@ void solve_solids(WorldData& world, Real h) {
   std::vector<int>& pressing = world.frame.pressing_points;
   const std::vector<solver::SoftGroup>& groups = world.derived.soft.groups;
   if (std::any_of(groups.begin(), groups.end(), is_stiff)) solver::count_pressing_points(tables, h, pressing);
+  solver::JoinedSolids& joined = world.frame.joined_solids;
+  solver::list_joined_solids(tables, world.frame.surfaces, h, world.derived.soft, joined);
+  for (const solver::JoinedSolids::System& system : joined.systems)
+    solve_stiff_solids(tables, pressing, h, Division{world.pool.get()}, joined.at(system));
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
     solver::TetrahedronBlocks& tetrahedra = group.tetrahedra;
-    if (tetrahedra.blocks.empty()) return;
+    if (tetrahedra.blocks.empty() || joined.has(world.derived.soft, group)) return;
     if (is_stiff(group)) {
-      solve_stiff_solids(tables, pressing, h, division, tetrahedra);
+      solver::TetrahedronBlocks* const part[] = {&tetrahedra};
+      solve_stiff_solids(tables, pressing, h, division, {.parts = part, .rows = {}, .ties = {}});
     } else {
       solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
     }
@@ -386,7 +411,8 @@ void begin_coupled_groups(WorldData& world, Real h, bool first) {
                                                 world.derived.coupled_groups, world.frame.check_marks));
   share_out_contacts(world, first);
   share_out_gravity(world, h, first);
-  solver::apply_mass_shares(world.derived.coupled_groups, world.tables, world.frame.hooked_points);
+  solver::apply_mass_shares(world.derived.coupled_groups, world.frame.surfaces.stiff, world.tables,
+                            world.frame.hooked_points);
 }
 
 void solve_ropes(WorldData& world, Real h, bool first) {

@@ -39,6 +39,7 @@ void update_point_contacts(WorldData& world, Real h) {
   for_ranges(*world.pool, static_cast<int>(t.element_contacts.size()), kElementContactGrain,
              [&](Range rows) { collision::update_element_contacts(rows, h, t); });
   collision::update_rope_contacts(*world.pool, h, world.frame.rope_contacts, t);
+  solver::find_contacts_of_stiff_solids(*world.pool, h, world.frame.surfaces, t);
 }
 
 void solve_point_contacts(WorldData& world, Real h) {

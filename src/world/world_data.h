@@ -24,6 +24,7 @@
 #include "solver/rope/rope_twist.h"
 #include "solver/soft/gas_pressure.h"
 #include "solver/soft/soft_groups.h"
+#include "solver/surface/joined_solids.h"
 #include "solver/surface/surface_groups.h"
 #include "state/sleeping_pairs.h"
 #include "state/tables.h"
@@ -146,7 +147,8 @@ struct Frame {
   // These members belong to particles.
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
-  solver::SurfaceContacts surfaces;  ///< Contacts of deformables with each other.
+  solver::SurfaceContacts surfaces;    ///< Contacts of deformables with each other.
+  solver::JoinedSolids joined_solids;  ///< Stiff solids that are solved together.
   solver::Repulsion repulsion;
   std::vector<state::VelocityRecord> velocity_before;  ///< Velocities of rope nodes before forces act.
   std::vector<solver::AirRecord> wind;                 ///< Velocity of the air at each particle [m/s].

@@ -27,8 +27,11 @@ struct Jelly {
     if (!rows.any_stiff) return pass(solve_tetrahedra);
     begin_stiff_solution(rows);
     pass(linearize_tetrahedra);
-    solve_for_change(rows, particles, pass);
-    finish_stiff_solution(rows, particles);
+    TetrahedronBlocks* const part[] = {&rows};
+    StiffSystem system = {.parts = part, .rows = {}, .ties = {}};
+    while (sharpen(system)) continue;
+    solve_for_change(particles, system, pass);
+    finish_stiff_solution(is_solved(system), rows, particles);
   }
 
   /// One substep without other forces.

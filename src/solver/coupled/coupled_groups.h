@@ -247,7 +247,8 @@ struct HookedPoint {
   Real inverse_mass = Real(0);
   Vec3 velocity = {};
 };
-void apply_mass_shares(CoupledGroups& groups, state::Tables& tables, std::vector<HookedPoint>& points);
+void apply_mass_shares(CoupledGroups& groups, const std::vector<std::uint8_t>& stiff, state::Tables& tables,
+                       std::vector<HookedPoint>& points);
 void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles);
 
 /// A particle substep.

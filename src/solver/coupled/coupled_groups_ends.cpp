@@ -96,7 +96,8 @@ Real inverse_mass_of(const Tables& t, const HookPlace& end, int shares) {
 
 }  // namespace
 
-void apply_mass_shares(CoupledGroups& groups, Tables& t, std::vector<HookedPoint>& points) {
+void apply_mass_shares(CoupledGroups& groups, const std::vector<std::uint8_t>& stiff, Tables& t,
+                       std::vector<HookedPoint>& points) {
   points.clear();
   std::vector<int>& shares = groups.scratch.counts;
   for (const CoupledGroup& group : groups.live()) {
@@ -112,6 +113,7 @@ void apply_mass_shares(CoupledGroups& groups, Tables& t, std::vector<HookedPoint
         const HookPlace& other = end == &hook.a ? hook.b : hook.a;
         // If several points share one end, each of them moves freely relative to the others.
         if (end->particle_count != 1 || t.objects[end->object].kind == PointRef::Kind::kRope) continue;
+        if (stiff[end->object] != 0) continue;  // Its solution knows the hook.
         state::VelocityRecord& record = t.particles.velocity[end->particle[0]];
         if (!(record.inverse_mass > Real(0)) || other.is_point()) continue;
         points.push_back({end->particle[0], record.inverse_mass, record.v});

@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "solver/body/body_motion.h"
 #include "solver/soft/soft_tuning.h"
+#include "solver/solid/stiff_ties.h"
 #include "state/bodies.h"
 
 #include <algorithm>
@@ -262,21 +263,8 @@ void list_holders(const state::Tables& t, const std::vector<int>& shares, Real h
   for (const PressedPoint& point : tetrahedra.pressed) {
     if (point.holder == PressedPoint::kNone || tetrahedra.stiff.find_holder(point.holder) != nullptr)
       continue;
-    HoldingBody body = {.body = point.holder, .moves = gives_way(t.bodies, point.holder)};
-    if (body.moves) {
-      const double share = share_of_body(t, point.holder, shares, h, tetrahedra.pressed);
-      const double mass = share / static_cast<double>(t.bodies.motion[point.holder].inverse_mass);
-      const Symmetric3<double> root = math::inverse(math::in_double(t.bodies.scale[point.holder]));
-      for (std::size_t k = 0; k < 3; ++k) {
-        body.mass[k][k] = mass;
-        const DVec3 axis = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
-        const DVec3 inertia = share * (root * (root * axis));
-        body.mass[3][3 + k] = inertia.x;
-        body.mass[4][3 + k] = inertia.y;
-        body.mass[5][3 + k] = inertia.z;
-      }
-    }
-    holders.push_back(body);
+    holders.push_back(
+        holding_body(t.bodies, point.holder, share_of_body(t, point.holder, shares, h, tetrahedra.pressed)));
   }
   for (PressedPoint& point : tetrahedra.pressed) {
     const HoldingBody* holder = tetrahedra.stiff.find_holder(point.holder);

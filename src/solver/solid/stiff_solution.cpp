@@ -38,23 +38,6 @@ Six product(const std::array<Six, 6>& m, const Six& v) {
   return result;
 }
 
-/// Adds an impulse at a lever.
-void add_impulse(DVec3 impulse, DVec3 lever, Six& to) {
-  const DVec3 angular = cross(lever, impulse);
-  const Six parts = {impulse.x, impulse.y, impulse.z, angular.x, angular.y, angular.z};
-  for (std::size_t i = 0; i < 6; ++i) to[i] += parts[i];
-}
-/// Adds the mass M of a point at a lever, so that the six numbers m y + ... are its impulses.
-void add_mass(const Symmetric3<double>& m, DVec3 lever, std::array<Six, 6>& to) {
-  for (std::size_t k = 0; k < 6; ++k) {
-    Six motion = {};
-    motion[k] = 1;
-    Six impulse = {};
-    add_impulse(m * velocity_at(motion, lever), lever, impulse);
-    for (std::size_t i = 0; i < 6; ++i) to[i][k] += impulse[i];
-  }
-}
-
 /// Factors L D L^T in place: L below the diagonal, 1 / D on it. What nearly nothing resists stays at rest.
 void factorize(std::array<Six, 6>& m) {
   constexpr double kLeastPivot = 1e-12;
@@ -83,10 +66,10 @@ Six solved(const std::array<Six, 6>& factor, Six x) {
   return x;
 }
 
-/// The part of the diagonal that the rows give.
+/// The part of the diagonal that rows of stress and of contact give.
 Symmetric3<double> diagonal_of(const StiffSolution& stiff, std::size_t i) {
   const double* d = stiff.diagonal.data() + 8 * i;
-  return {d[0], d[1], d[2], d[4], d[5], d[6]};
+  return Symmetric3<double>{d[0], d[1], d[2], d[4], d[5], d[6]} + stiff.contact_diagonal[i];
 }
 
 const PressedPoint* pressed_point(const TetrahedronBlocks& tetrahedra, std::size_t i) {
@@ -130,7 +113,13 @@ DVec3 slip_of(const PressedPoint& point, DVec3 of_point, const HoldingBody* move
 /// Takes masses, and what preconditions the particles and the bodies that hold some.
 void take_masses(TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
   StiffSolution& stiff = tetrahedra.stiff;
-  for (HoldingBody& body : stiff.holders) body.factor = body.mass;
+  for (HoldingBody& body : stiff.holders) {
+    body.factor = body.own_factor = body.mass;
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t k = 0; k < 6; ++k) body.factor[i][k] += body.tied[i][k];
+    }
+    factorize(body.own_factor);
+  }
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
     stiff.mass[i] = {};
     stiff.per_diagonal[i] = {};
@@ -167,7 +156,9 @@ double precondition(TetrahedronBlocks& tetrahedra) {
       add_impulse(point.follows * at(stiff.residual, i), point.lever, mover->wanted);
   }
   for (HoldingBody& body : stiff.holders) {
-    body.wanted = body.moves ? solved(body.factor, body.wanted) : Six{};
+    const Six lacks = body.moves ? body.wanted : Six{};
+    body.error = product(lacks, solved(body.own_factor, lacks));
+    body.wanted = solved(body.factor, lacks);
     size += product(body.wanted, body.residual);
   }
   for (const PressedPoint& point : tetrahedra.pressed) {
@@ -192,7 +183,8 @@ double add_masses(TetrahedronBlocks& tetrahedra) {
     set(at(stiff.image, i) + stiff.mass[i] * at(stiff.direction, i), i, stiff.image);
   double curvature = product(stiff.direction, stiff.image);
   for (const HoldingBody& body : stiff.holders)
-    curvature += product(body.direction, product(body.mass, body.direction));
+    curvature +=
+        product(body.direction, product(body.mass, body.direction)) + product(body.direction, body.image);
   for (const PressedPoint& point : tetrahedra.pressed) {
     const DVec3 slip = slip_along(tetrahedra, point);
     curvature += dot(slip, point.drag * slip);
@@ -200,24 +192,8 @@ double add_masses(TetrahedronBlocks& tetrahedra) {
   return curvature;
 }
 
-}  // namespace
-
-void begin_stiff_solution(TetrahedronBlocks& tetrahedra) {
-  StiffSolution& stiff = tetrahedra.stiff;
-  const std::size_t count = tetrahedra.volume_at.size();
-  stiff.stress.resize(tetrahedra.blocks.size());
-  stiff.force.assign(4 * count, 0);
-  stiff.change.assign(4 * count, 0);
-  stiff.residual.assign(4 * count, 0);
-  stiff.direction.assign(4 * count, 0);
-  stiff.image.assign(4 * count, 0);
-  stiff.diagonal.assign(8 * count, 0);
-  stiff.mass.resize(count);
-  stiff.per_diagonal.resize(count);
-  stiff.first_size = 0;
-  stiff.solutions = 0;
-}
-
+/// Begins one part with the change so far, and with `start` for points that a contact has taken hold of.
+/// Returns whether any point changes its velocity.
 bool look_back(TetrahedronBlocks& tetrahedra) {
   StiffSolution& stiff = tetrahedra.stiff;
   for (const PressedPoint& point : tetrahedra.pressed) {
@@ -229,12 +205,21 @@ bool look_back(TetrahedronBlocks& tetrahedra) {
   }
   stiff.direction = stiff.change;
   std::fill(stiff.image.begin(), stiff.image.end(), 0.0);
-  return std::any_of(stiff.change.begin(), stiff.change.end(), [](double v) { return v != 0; });
+  for (HoldingBody& body : stiff.holders) {
+    body.direction = body.change;
+    body.image = {};
+    body.tied = {};
+  }
+  const auto is_any = [](double v) { return v != 0; };
+  return std::any_of(stiff.change.begin(), stiff.change.end(), is_any) ||
+         std::any_of(stiff.holders.begin(), stiff.holders.end(), [&](const HoldingBody& body) {
+           return std::any_of(body.change.begin(), body.change.end(), is_any);
+         });
 }
 
-void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
+/// Finds what one part lacks without its contacts with other solids.
+void find_residual(TetrahedronBlocks& tetrahedra) {
   StiffSolution& stiff = tetrahedra.stiff;
-  take_masses(tetrahedra, particles);
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
     const DVec3 lacks = at(stiff.force, i) - at(stiff.image, i);
     DVec3 change = at(stiff.change, i);
@@ -249,57 +234,157 @@ void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
   }
   for (HoldingBody& body : stiff.holders) {
     body.residual = product(body.mass, body.change);
-    for (double& lacks : body.residual) lacks = -lacks;
+    for (std::size_t k = 0; k < 6; ++k) body.residual[k] = -(body.residual[k] + body.image[k]);
   }
-  stiff.size = precondition(tetrahedra);
-  if (!(stiff.first_size > 0)) stiff.first_size = stiff.size;
-  stiff.direction = stiff.image;
-  for (HoldingBody& body : stiff.holders) body.direction = body.wanted;
-  std::fill(stiff.image.begin(), stiff.image.end(), 0.0);
 }
 
-bool needs_direction(const TetrahedronBlocks& tetrahedra) {
-  const StiffSolution& stiff = tetrahedra.stiff;
-  return stiff.size > kStiffSolidError * kStiffSolidError * stiff.first_size &&
-         stiff.solutions < kMostStiffSolidDirections;
-}
-
-bool may_solve_again(const TetrahedronBlocks& tetrahedra) {
-  return 2 * tetrahedra.stiff.solutions < kMostStiffSolidDirections;
-}
-
-void advance(TetrahedronBlocks& tetrahedra) {
+/// Goes along the direction of one part.
+void go_along(double share, TetrahedronBlocks& tetrahedra) {
   StiffSolution& stiff = tetrahedra.stiff;
-  const double curvature = add_masses(tetrahedra);
-  ++stiff.solutions;
-  if (!(curvature > 0)) {
-    stiff.size = 0;
-    return;
-  }
-  const double along = stiff.size / curvature;
   for (std::size_t i = 0; i < stiff.change.size(); ++i) {
-    stiff.change[i] += along * stiff.direction[i];
-    stiff.residual[i] -= along * stiff.image[i];
+    stiff.change[i] += share * stiff.direction[i];
+    stiff.residual[i] -= share * stiff.image[i];
   }
   for (PressedPoint& point : tetrahedra.pressed)
-    point.drag_lacks -= along * (point.drag * slip_along(tetrahedra, point));
+    point.drag_lacks -= share * (point.drag * slip_along(tetrahedra, point));
   for (HoldingBody& body : stiff.holders) {
     const Six image = product(body.mass, body.direction);
     for (std::size_t k = 0; k < 6; ++k) {
-      body.change[k] += along * body.direction[k];
-      body.residual[k] -= along * image[k];
+      body.change[k] += share * body.direction[k];
+      body.residual[k] -= share * (image[k] + body.image[k]);
     }
   }
-  const double size = precondition(tetrahedra);
-  const double kept = size / stiff.size;
-  stiff.size = size;
+}
+
+/// Turns the direction of one part to what the residual asks for, and keeps a share of the one before.
+void turn_direction(double kept, StiffSolution& stiff) {
   for (std::size_t i = 0; i < stiff.direction.size(); ++i) {
     stiff.direction[i] = stiff.image[i] + kept * stiff.direction[i];
     stiff.image[i] = 0;
   }
   for (HoldingBody& body : stiff.holders) {
     for (std::size_t k = 0; k < 6; ++k) body.direction[k] = body.wanted[k] + kept * body.direction[k];
+    body.image = {};
   }
+}
+
+/// Whether what is lacking of an impulse is more than a share of the change that it makes. `lacking` and
+/// `changing` are energies: squares of impulses over the mass that they move.
+bool lacks_impulse(double error, double lacking, double changing) {
+  const double most = std::max(kMotionError, error);
+  return lacking > most * most * changing;
+}
+
+/// Whether a body or a solid as a whole lacks so much of its impulse that it would move otherwise than its
+/// points do, or not keep its momentum. Points of steel resist with a million times their mass, so that
+/// little of the residual says so.
+bool lacks_motion(double error, const StiffSolution& stiff) {
+  for (const HoldingBody& body : stiff.holders) {
+    if (lacks_impulse(error, body.error, product(body.change, product(body.mass, body.change)))) return true;
+  }
+  if (stiff.is_anchored) return false;
+  DVec3 lacking;
+  double changing = 0;
+  double mass = 0;
+  for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
+    const DVec3 change = at(stiff.change, i);
+    lacking += at(stiff.residual, i);
+    changing += dot(change, stiff.mass[i] * change);
+    mass += stiff.mass[i].xx;
+  }
+  return lacks_impulse(error, dot(lacking, lacking) / mass, changing);
+}
+
+/// Whether something that does not move holds points.
+bool is_anchored(const TetrahedronBlocks& tetrahedra) {
+  return std::any_of(tetrahedra.pressed.begin(), tetrahedra.pressed.end(), [](const PressedPoint& point) {
+    return point.held != 0 && point.mover == PressedPoint::kNone;
+  });
+}
+
+/// The sum over the parts of what `work` returns.
+template <class Work>
+double sum_of_parts(const StiffSystem& system, Work work) {
+  double sum = 0;
+  for (TetrahedronBlocks* part : system.parts) sum += work(*part);
+  return sum;
+}
+
+}  // namespace
+
+void begin_stiff_solution(TetrahedronBlocks& tetrahedra) {
+  StiffSolution& stiff = tetrahedra.stiff;
+  const std::size_t count = tetrahedra.volume_at.size();
+  stiff.stress.resize(tetrahedra.blocks.size());
+  stiff.force.assign(4 * count, 0);
+  stiff.change.assign(4 * count, 0);
+  stiff.residual.assign(4 * count, 0);
+  stiff.direction.assign(4 * count, 0);
+  stiff.image.assign(4 * count, 0);
+  stiff.diagonal.assign(8 * count, 0);
+  stiff.contact_diagonal.assign(count, {});
+  stiff.mass.resize(count);
+  stiff.per_diagonal.resize(count);
+}
+
+bool look_back(const StiffSystem& system) {
+  bool any = false;
+  for (TetrahedronBlocks* part : system.parts) any = look_back(*part) || any;
+  return any;
+}
+
+void aim(const state::Particles& particles, StiffSystem& system) {
+  for (TetrahedronBlocks* part : system.parts)
+    std::fill(part->stiff.contact_diagonal.begin(), part->stiff.contact_diagonal.end(), Symmetric3<double>{});
+  add_row_diagonals(system);
+  add_tie_diagonals(system);
+  for (TetrahedronBlocks* part : system.parts) {
+    take_masses(*part, particles);
+    find_residual(*part);
+    part->stiff.is_anchored = is_anchored(*part);
+  }
+  add_row_forces(system);
+  add_tie_forces(system);
+  for (const StiffTie& tie : system.ties) {
+    if (tie.mover == StiffTie::kNone) system.parts[tie.part[0]]->stiff.is_anchored = true;
+  }
+  system.size = sum_of_parts(system, precondition);
+  if (!(system.first_size > 0)) system.first_size = system.size;
+  for (TetrahedronBlocks* part : system.parts) turn_direction(0, part->stiff);
+}
+
+bool needs_direction(const StiffSystem& system) {
+  if (system.solutions >= kMostStiffSolidDirections || !(system.size > 0)) return false;
+  return system.size > system.error * system.error * system.first_size ||
+         std::any_of(system.parts.begin(), system.parts.end(),
+                     [&](const TetrahedronBlocks* part) { return lacks_motion(system.error, part->stiff); });
+}
+
+bool may_solve_again(const StiffSystem& system) {
+  return 2 * system.solutions < kMostStiffSolidDirections;
+}
+
+bool sharpen(StiffSystem& system) {
+  if (system.error <= kStiffSolidError) return false;
+  system.error = std::max(kStiffSolidError, kStiffSolidErrorFall * system.error);
+  return true;
+}
+
+bool is_solved(const StiffSystem& system) {
+  return system.error <= kStiffSolidError && !needs_direction(system);
+}
+
+void advance(StiffSystem& system) {
+  const double curvature = sum_of_parts(system, add_masses);
+  ++system.solutions;
+  if (!(curvature > 0)) {
+    system.size = 0;
+    return;
+  }
+  for (TetrahedronBlocks* part : system.parts) go_along(system.size / curvature, *part);
+  const double size = sum_of_parts(system, precondition);
+  for (TetrahedronBlocks* part : system.parts) turn_direction(size / system.size, part->stiff);
+  system.size = size;
 }
 
 void find_pressed_impulses(TetrahedronBlocks& tetrahedra) {
@@ -314,9 +399,9 @@ void find_pressed_impulses(TetrahedronBlocks& tetrahedra) {
   }
 }
 
-void finish_stiff_solution(TetrahedronBlocks& tetrahedra, state::Particles& particles) {
+void finish_stiff_solution(bool converged, TetrahedronBlocks& tetrahedra, state::Particles& particles) {
   StiffSolution& stiff = tetrahedra.stiff;
-  stiff.unconverged = stiff.unconverged || stiff.solutions >= kMostStiffSolidDirections;
+  stiff.unconverged = stiff.unconverged || !converged;
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
     if (tetrahedra.pressed_of[i] != 0) continue;
     particles.velocity[tetrahedra.first_particle + i].v += vector_cast<Real>(at(stiff.change, i));

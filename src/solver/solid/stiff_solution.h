@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/solid/stiff_rows.h"
 #include "solver/solid/tetrahedron_blocks.h"
 #include "solver/solid/tetrahedron_solve.h"
 #include "state/particles.h"
@@ -19,42 +20,54 @@
 
 namespace hooke::solver {
 
-/// Forgets the last solution.
+/// Forgets the last solution of one part.
 void begin_stiff_solution(TetrahedronBlocks& tetrahedra);
 
 /// Begins with the change so far, and with `start` for points that a contact has taken hold of. It becomes
 /// the direction. Returns whether it is other than zero, so that rows resist it.
-[[nodiscard]] bool look_back(TetrahedronBlocks& tetrahedra);
+[[nodiscard]] bool look_back(const StiffSystem& system);
 
 /// Takes W of each particle, and finds the residual and the first direction. `image` is how rows resist the
 /// change so far.
-void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles);
+void aim(const state::Particles& particles, StiffSystem& system);
 
 /// Whether the residual is too large still.
-[[nodiscard]] bool needs_direction(const TetrahedronBlocks& tetrahedra);
+[[nodiscard]] bool needs_direction(const StiffSystem& system);
 
 /// Whether enough directions are left to solve for other contacts to the end. What is not solved to the end
 /// may gain energy; a contact that pulls for a substep does not.
-[[nodiscard]] bool may_solve_again(const TetrahedronBlocks& tetrahedra);
+[[nodiscard]] bool may_solve_again(const StiffSystem& system);
+
+/// Lets the next solution have a smaller error. Returns false if it is the smallest already.
+[[nodiscard]] bool sharpen(StiffSystem& system);
+
+/// Whether all is solved down to the smallest error.
+[[nodiscard]] bool is_solved(const StiffSystem& system);
 
 /// Goes along the direction as far as its image says, and finds the next one.
-void advance(TetrahedronBlocks& tetrahedra);
+void advance(StiffSystem& system);
 
-/// Finds the change for the present W. `pass` calls a function with all blocks of rows, color after color.
+/// Finds the change for the present W and contacts. `pass` calls a function with all blocks of rows, color
+/// after color.
 template <class Pass>
-void solve_for_change(TetrahedronBlocks& tetrahedra, const state::Particles& particles, const Pass& pass) {
-  if (look_back(tetrahedra)) pass(resist_tetrahedra);
-  aim(tetrahedra, particles);
-  while (needs_direction(tetrahedra)) {
+void solve_for_change(const state::Particles& particles, StiffSystem& system, const Pass& pass) {
+  const auto resist = [&] {
     pass(resist_tetrahedra);
-    advance(tetrahedra);
+    resist_stiff_rows(system);
+    resist_ties(system);
+  };
+  if (look_back(system)) resist();
+  aim(particles, system);
+  while (needs_direction(system)) {
+    resist();
+    advance(system);
   }
 }
 
 /// Notes the impulses that pressed points have so far.
 void find_pressed_impulses(TetrahedronBlocks& tetrahedra);
 
-/// Changes the velocities of all particles but those that something presses on.
-void finish_stiff_solution(TetrahedronBlocks& tetrahedra, state::Particles& particles);
+/// Changes the velocities of all particles of a part but those that something presses on.
+void finish_stiff_solution(bool converged, TetrahedronBlocks& tetrahedra, state::Particles& particles);
 
 }  // namespace hooke::solver

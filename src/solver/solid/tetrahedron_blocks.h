@@ -108,8 +108,12 @@ struct HoldingBody {
   bool moves = false;              ///< Whether it gives way.
   std::array<Six, 6> mass = {};    ///< [kg, kg m, kg m^2]
   std::array<Six, 6> factor = {};  ///< L D L^T of mass and diagonal; what is not positive counts as infinite.
-  Six change = {};                 ///< Change of its motion so far.
-  Six residual = {};               ///< Impulse that is lacking, without that of its points.
+  std::array<Six, 6> own_factor = {};  ///< The same of mass alone.
+  std::array<Six, 6> tied = {};        ///< How hooks resist its motion by themselves [as mass].
+  Six image = {};                      ///< Impulse by which hooks resist `direction`.
+  double error = 0;                    ///< Square of the impulse that is lacking, over mass [J].
+  Six change = {};                     ///< Change of its motion so far.
+  Six residual = {};                   ///< Impulse that is lacking, without that of its points.
   Six direction = {};
   Six wanted = {};  ///< What the residual asks for.
 };
@@ -117,6 +121,24 @@ struct HoldingBody {
 /// The velocity at a lever [m] of a body that moves by the six numbers `motion`.
 inline DVec3 velocity_at(const HoldingBody::Six& motion, DVec3 lever) {
   return DVec3{motion[0], motion[1], motion[2]} + cross(DVec3{motion[3], motion[4], motion[5]}, lever);
+}
+
+/// Adds an impulse [N s] at a lever [m] to an impulse and an angular impulse.
+inline void add_impulse(DVec3 impulse, DVec3 lever, HoldingBody::Six& to) {
+  const DVec3 angular = cross(lever, impulse);
+  const HoldingBody::Six parts = {impulse.x, impulse.y, impulse.z, angular.x, angular.y, angular.z};
+  for (std::size_t i = 0; i < 6; ++i) to[i] += parts[i];
+}
+
+/// Adds the mass M of a point at a lever, so that the six numbers m y + ... are its impulses.
+inline void add_mass(const math::Symmetric3<double>& m, DVec3 lever, std::array<HoldingBody::Six, 6>& to) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    HoldingBody::Six motion = {};
+    motion[k] = 1;
+    HoldingBody::Six impulse = {};
+    add_impulse(m * velocity_at(motion, lever), lever, impulse);
+    for (std::size_t i = 0; i < 6; ++i) to[i][k] += impulse[i];
+  }
 }
 
 /// A solution of all rows of a group at once, see solver/solid/stiff_solution.h. Vectors have four numbers
@@ -130,13 +152,12 @@ struct StiffSolution {
   std::vector<double> image;        ///< Impulse by which the stress resists `direction` [N s].
   std::vector<double> diagonal;  ///< Two times four numbers: the stress's answer to a particle's own motion,
                                  ///< the six of a symmetric matrix [kg].
-  std::vector<math::Symmetric3<double>> mass;          ///< W^-1 of each particle [kg].
+  std::vector<math::Symmetric3<double>> contact_diagonal;  ///< That of contacts with other solids [kg].
+  std::vector<math::Symmetric3<double>> mass;              ///< W^-1 of each particle [kg].
   std::vector<math::Symmetric3<double>> per_diagonal;  ///< Inverse of mass and diagonal [1/kg]; 0 for what
                                                        ///< does not move.
   std::vector<HoldingBody> holders;                    ///< In the order in which points name them.
-  double size = 0;                                     ///< Square of the residual, by per_diagonal [J].
-  double first_size = 0;                               ///< That of `force`.
-  int solutions = 0;                                   ///< Directions taken in this substep.
+  bool is_anchored = false;  ///< Something that does not move holds points, or hooks do.
   bool unconverged = false;  ///< Whether they were too few in some substep; read and cleared by end_step.
 
   /// The holder with this body, null if it holds no point.

@@ -24,6 +24,12 @@ void for_groups(parallel::ThreadPool& pool, SurfaceContacts& contacts, Work work
                       [&](int i) { work(contacts.groups[static_cast<std::size_t>(i)]); });
 }
 
+/// Whether contacts are not known, or vertices are about to leave their cages.
+bool needs_contacts(const state::Tables& tables, Real h, const SurfaceContacts& contacts,
+                    const SurfaceGroup& group) {
+  return !group.known || group.substeps_left == 0 || leaves_cages(tables, h, contacts, group);
+}
+
 /// Takes the positions with which the group begins the substep.
 void place_vertices(SurfaceContacts& contacts, const SurfaceGroup& group) {
   for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
@@ -76,6 +82,21 @@ void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceConta
   });
 }
 
+void find_contacts_of_stiff_solids(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
+                                   const state::Tables& tables) {
+  if (!contacts.active || !contacts.any_stiff) return;
+  refresh_surface_groups(tables, h, contacts);
+  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+    const bool any_stiff = std::any_of(group.meshes.begin(), group.meshes.end(), [&](std::uint32_t mesh) {
+      return contacts.stiff[contacts.surfaces.meshes[mesh].object] != 0;
+    });
+    if (!any_stiff) return;
+    // Planes that are out of date move what rolls or slides over an edge, which strains what is stiff.
+    if (needs_contacts(tables, h, contacts, group) || pairs_would_meet(tables, h, contacts, group))
+      find_group_contacts(tables, h, contacts, group);
+  });
+}
+
 bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
                               state::Tables& tables) {
   if (!contacts.active) return false;
@@ -86,7 +107,7 @@ bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContact
   for_groups(pool, contacts, [&](SurfaceGroup& group) {
     for (const std::uint32_t mesh : group.meshes)
       contacts.touching[contacts.surfaces.meshes[mesh].object] = 1;
-    if (group.known && group.substeps_left > 0 && !leaves_cages(tables, h, contacts, group)) return;
+    if (!needs_contacts(tables, h, contacts, group)) return;
     any = true;
     for (const std::uint32_t mesh : group.meshes)
       contacts.refreshed[contacts.surfaces.meshes[mesh].object] = 1;

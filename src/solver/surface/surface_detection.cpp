@@ -290,6 +290,14 @@ class RowMaker {
     return is_in_cone(found.second_mesh, tip, found.normal) ? kRidgeShare : Real(0);
   }
 
+  /// Whether both are solids, and one is stiff.
+  [[nodiscard]] bool belongs_to_solution(const SurfaceFound& found) const {
+    const std::uint32_t a = c_.surfaces.meshes[found.first_mesh].object;
+    const std::uint32_t b = c_.surfaces.meshes[found.second_mesh].object;
+    return (c_.stiff[a] | c_.stiff[b]) != 0 && t_.objects[a].tetrahedra.count > 0 &&
+           t_.objects[b].tetrahedra.count > 0;
+  }
+
   void add_row(const SurfaceFound& found) {
     const Real share = found.is_edges ? share_of_edges(found) : share_of_face(found);
     if (!(share > Real(0))) return;
@@ -299,7 +307,11 @@ class RowMaker {
     row.normal = found.normal;
     row.distance = share * distance_of(found);
     row.friction = std::sqrt(object(found.first_mesh).friction * object(found.second_mesh).friction);
-    packer_.add(row);
+    if (belongs_to_solution(found)) {
+      group_.stiff_rows.push_back(row);
+    } else {
+      packer_.add(row);
+    }
   }
 
   const state::Tables& t_;
@@ -328,6 +340,7 @@ void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& c
   place_vertices(tables, contacts, group);
   make_cages(tables, h, contacts, group);
   group.rows.clear();
+  group.stiff_rows.clear();
   group.face_pairs.clear();
   group.edge_pairs.clear();
   group.known = true;

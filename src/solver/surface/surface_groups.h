@@ -32,6 +32,7 @@ struct SurfaceGroup {
   Vec3 displacement_now = {};  ///< Its motion in this substep [m].
   int substeps_left = 0;       ///< Particle substeps for which cages were made.
   std::vector<SurfaceRowBlock> rows;
+  std::vector<SurfaceRow> stiff_rows;  ///< Those between solids that are solved as a whole.
   std::vector<SurfacePairBlock> face_pairs, edge_pairs;
   std::vector<SurfaceFound> found;  ///< Scratch memory.
   std::vector<std::uint32_t> hot;   ///< Scratch memory: pairs that are corrected.
@@ -63,6 +64,8 @@ struct SurfaceContacts {
   base::DisjointSets sets;                               ///< Scratch memory: meshes that share a group.
   int substeps_left = 0;                                 ///< Particle substeps that the step still has.
   std::vector<std::uint8_t> touching;                    ///< By object: it is in a group.
+  std::vector<std::uint8_t> stiff;      ///< By object: it is a solid that is solved as a whole.
+  bool any_stiff = false;               ///< Some object is.
   std::vector<std::uint8_t> refreshed;  ///< By object: contacts were found anew in this substep.
   bool regroup = false;                 ///< All bounds are to be made anew.
 

@@ -212,6 +212,10 @@ class SurfaceSearcher {
 
   HWY_INLINE void push(std::uint32_t a, std::uint32_t b) { stack_[depth_++] = {a, b}; }
 
+  /// The bits of lanes that hold one of `count` features. A box without bounds, of a point that flies off,
+  /// overlaps empty lanes, too.
+  static HWY_INLINE unsigned lanes_of(std::uint32_t count) { return count < 4 ? (1U << count) - 1U : 15U; }
+
   /// Goes on below two nodes that overlap.
   HWY_INLINE void visit(std::uint32_t a, std::uint32_t b) {
     const SurfaceNode& node_a = s_.mesh_a->nodes[a];
@@ -267,7 +271,8 @@ class SurfaceSearcher {
     const SurfaceCell& a = points.mesh.cells[points.cell];
     const SurfaceCell& b = faces.mesh.cells[faces.cell];
     for (std::uint32_t i = a.first_vertex; i < a.end_vertex; ++i) {
-      unsigned bits = Tests::overlap_four(points.boxes.vertices[i], faces.boxes.triangles[faces.cell]);
+      unsigned bits = Tests::overlap_four(points.boxes.vertices[i], faces.boxes.triangles[faces.cell]) &
+                      lanes_of(b.end_triangle - b.first_triangle);
       const std::uint32_t v = points.mesh.vertices[i];
       for (std::uint32_t j = b.first_triangle; bits != 0; ++j, bits >>= 1U) {
         if ((bits & 1U) == 0) continue;
@@ -282,7 +287,8 @@ class SurfaceSearcher {
     for (std::uint32_t i = a.first_edge; i < a.end_edge; ++i) {
       for (std::uint32_t group = 0; 4 * group < b.end_edge - b.first_edge; ++group) {
         unsigned bits =
-            Tests::overlap_four(s_.boxes_a->edges[i], s_.boxes_b->edge_groups[b.first_group + group]);
+            Tests::overlap_four(s_.boxes_a->edges[i], s_.boxes_b->edge_groups[b.first_group + group]) &
+            lanes_of(b.end_edge - b.first_edge - 4 * group);
         const auto& [p, q] = s_.mesh_a->edges[i].vertex;
         for (std::uint32_t j = b.first_edge + 4 * group; bits != 0; ++j, bits >>= 1U) {
           if ((bits & 1U) == 0 || (same && j <= i)) continue;

@@ -82,6 +82,8 @@ struct SurfaceMeshes {
   /// Vertices with the same number are held together by hooks, and touch each other as little as one vertex
   /// touches itself.
   std::vector<std::uint32_t> joined;
+
+  [[nodiscard]] std::uint32_t object_of(std::uint32_t vertex) const { return meshes[mesh_of[vertex]].object; }
 };
 
 /// Makes the surfaces anew if rows have changed, and what hooks join. Returns whether it made surfaces.

@@ -90,6 +90,15 @@ struct SurfaceSearch {
   Real reserve = Real(0);                           ///< Rounding of positions [m].
 };
 
+/// What a row of contact says; see SurfaceRowBlock.
+struct SurfaceRow {
+  std::array<std::uint32_t, 4> vertex = {};
+  std::array<Real, 4> weight = {};
+  Vec3 normal = {};
+  Real distance = Real(0);
+  Real friction = Real(0);
+};
+
 /// Rows that keep vertices and triangles apart, or edges, side by side. The points sum weight x of the two
 /// sides differ by the gap. Rows of a block share no vertex; lanes without a row repeat the last one.
 struct alignas(64) SurfaceRowBlock {

@@ -8,15 +8,6 @@
 
 namespace hooke::solver {
 
-/// What a row of contact says; see SurfaceRowBlock.
-struct SurfaceRow {
-  std::array<std::uint32_t, 4> vertex = {};
-  std::array<Real, 4> weight = {};
-  Vec3 normal = {};
-  Real distance = Real(0);
-  Real friction = Real(0);
-};
-
 /// Puts rows into blocks whose rows share no vertex. A row goes into the first open block that has none of
 /// its vertices; a block that is full is closed, or the fullest one if all have some.
 class SurfaceRowPacker {

@@ -13,6 +13,24 @@ namespace hooke::solver {
 
 namespace {
 
+/// Sets how far apart pairs stay in this substep, from where they are.
+void set_least(SurfaceGroup& group) {
+  const Real certain = Real(3) * group.reserve;
+  for (auto* blocks : {&group.face_pairs, &group.edge_pairs}) {
+    for (SurfacePairBlock& block : *blocks) {
+      for (int lane = 0; lane < kLanes; ++lane)
+        block.least[lane] = std::max(certain, std::min(block.most[lane], kKeptOfGap * block.now[lane]));
+    }
+  }
+}
+
+/// Measures how far apart pairs are. Returns whether one is nearer than it may be, with `slack` [m].
+bool measure_pairs(Real slack, const SurfaceContacts& contacts, SurfaceGroup& group) {
+  const bool faces = wide::measure_pairs(group.face_pairs, false, slack, contacts.position.data());
+  const bool edges = wide::measure_pairs(group.edge_pairs, true, slack, contacts.position.data());
+  return faces || edges;
+}
+
 /// Moves the vertices of one group and looks at its pairs.
 class Truncation {
  public:
@@ -25,7 +43,7 @@ class Truncation {
 
   void run() {
     clip_all();
-    set_least();
+    set_least(group_);
     int rounds = 0;
     while (measure(Real(0))) {
       if (rounds == kCorrectionRounds) return hold_back();
@@ -61,21 +79,7 @@ class Truncation {
     });
   }
 
-  void set_least() {
-    const Real certain = Real(3) * group_.reserve;
-    for (auto* blocks : {&group_.face_pairs, &group_.edge_pairs}) {
-      for (SurfacePairBlock& block : *blocks) {
-        for (int lane = 0; lane < kLanes; ++lane)
-          block.least[lane] = std::max(certain, std::min(block.most[lane], kKeptOfGap * block.now[lane]));
-      }
-    }
-  }
-
-  bool measure(Real slack) {
-    const bool faces = wide::measure_pairs(group_.face_pairs, false, slack, c_.position.data());
-    const bool edges = wide::measure_pairs(group_.edge_pairs, true, slack, c_.position.data());
-    return faces || edges;
-  }
+  bool measure(Real slack) { return measure_pairs(slack, c_, group_); }
 
   struct Pair {
     SurfacePairBlock* block;
@@ -244,6 +248,23 @@ bool leaves_cages(const state::Tables& tables, Real h, const SurfaceContacts& co
     pin_leaves = pin_leaves || velocity.inverse_mass == Real(0);
   });
   return pin_leaves || static_cast<double>(leaving) > kClippedShare * static_cast<double>(count);
+}
+
+bool pairs_would_meet(const state::Tables& tables, Real h, SurfaceContacts& contacts, SurfaceGroup& group) {
+  const auto place = [&](Real time) {
+    for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
+      const std::uint32_t particle = contacts.surfaces.particle[vertex];
+      contacts.position[vertex].x = tables.particles.position[particle].x + contacts.shift[mesh] +
+                                    time * tables.particles.velocity[particle].v;
+    });
+  };
+  set_least(group);
+  place(h);
+  const bool meet = measure_pairs(Real(0), contacts, group);
+  if (meet) return true;
+  place(Real(0));
+  (void)measure_pairs(Real(0), contacts, group);
+  return false;
 }
 
 void truncate_group(Real h, SurfaceContacts& contacts, SurfaceGroup& group, state::Particles& particles) {

@@ -8,6 +8,11 @@ namespace hooke::solver {
 [[nodiscard]] bool leaves_cages(const state::Tables& tables, Real h, const SurfaceContacts& contacts,
                                 const SurfaceGroup& group);
 
+/// Whether pairs of a group would come too near each other in a substep of `h` [s], as particles move now. If
+/// not, it measures how far apart they are.
+[[nodiscard]] bool pairs_would_meet(const state::Tables& tables, Real h, SurfaceContacts& contacts,
+                                    SurfaceGroup& group);
+
 /// Changes where vertices went in this substep, so that no pair of the group crosses between: clips them
 /// to their cages, moves pairs that come too near apart along their normals, and holds back, at last, what
 /// does not come apart. A pair whose both ends are separated along the same normal does not meet on straight

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "solver/solid/tetrahedron_blocks.h"
+#include "state/tables.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+/// \file
+/// Ball hooks of stiff solids in the stiff solution. The solution finds what points do under stress while
+/// hooks hold them; hooks themselves are solved after it, with all that they join. Points that stress had
+/// moved as if nothing held them were drawn back as light ones: a jelly of 100 MPa that hung on a hook with
+/// 50 kg under it gained 17 times its energy.
+
+namespace hooke::solver {
+
+struct StiffSystem;
+
+/// A hook between points of solids and a body, the world or points of other solids. It gives the points the
+/// impulse
+///
+///   carried - stiffness u
+///
+/// u being the velocity at which the points leave the other end, after the solution. `carried` is what the
+/// solution before found, so that u vanishes (augmented Lagrangian, Hestenes 1969).
+struct StiffTie {
+  static constexpr std::size_t kMostPoints = 8;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  std::array<std::uint32_t, kMostPoints> part = {};   ///< Of the system, by point.
+  std::array<std::uint32_t, kMostPoints> point = {};  ///< Row of each particle, from its part's first one.
+  std::array<double, kMostPoints> weight = {};        ///< Those of another solid are negative.
+  std::size_t count = 0;                              ///< Number of points.
+  std::uint32_t body = kNone;                         ///< Row of the other end, if it gives way.
+  std::uint32_t mover = kNone;  ///< That body in StiffSolution::holders of the first point's part.
+  double share = 1;             ///< Share of its mass that this part has [ratio].
+  DVec3 lever = {};             ///< From its center of mass [m].
+  DVec3 before = {};            ///< u before the solution, with what closes the gap within a substep [m/s].
+  double stiffness = 0;         ///< [kg]
+  DVec3 carried = {};           ///< [N s]
+};
+
+/// Lets bodies that hooks hold be unknowns of the solution, and chooses how stiff each hook is in it. Call it
+/// after rows of stress have been linearized and pressed points noted.
+void prepare_ties(const state::Tables& tables, const StiffSystem& system);
+
+/// Adds what hooks add to the diagonals of their points.
+void add_tie_diagonals(const StiffSystem& system);
+
+/// Adds the impulses of hooks at the velocities before to the residuals.
+void add_tie_forces(const StiffSystem& system);
+
+/// Adds the impulses by which hooks resist the direction to the images.
+void resist_ties(const StiffSystem& system);
+
+/// Carries the impulses of hooks on. Returns whether one changes so much that it is to be solved again.
+[[nodiscard]] bool renew_ties(const StiffSystem& system);
+
+/// Takes the impulses of hooks back, so that hooks find them again when they are solved.
+void release_ties(const StiffSystem& system, state::Particles& particles);
+
+/// A body with a share of its mass.
+[[nodiscard]] HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body, double share);
+
+}  // namespace hooke::solver
