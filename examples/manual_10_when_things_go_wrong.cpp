@@ -25,8 +25,7 @@ std::uint32_t explain(const hooke::StepReport& report) {
       {report.rows_quarantined, "points or bodies were reset: look at your force laws and at extreme values"},
       {report.ropes_unconverged, "ropes are off their length: more particle_substeps, or a lighter load"},
       {report.pairs_left_out, "bodies are deep inside many others: do not create them at one place"},
-      {report.islands_refused, "stacks may sink: fewer bodies on much lighter ones, or more substeps"},
-      {report.contacts_refused, "contacts may sink: masses that differ less, or more substeps"},
+      {report.rows_refused, "stacks may sink and nets may gape: fewer bodies, like masses, or more substeps"},
       {report.coupled_groups_cut_short, "groups of ropes took too much work: fewer points"},
   };
   std::uint32_t found = 0;

@@ -116,8 +116,10 @@ static Json json_of_problems(const std::vector<RunWarning>& problems) {
 }
 
 void note_refused(const StepReport& step, StepReport& worst) {
-  for (const RefusedCount& count : refused_counts())
+  for (const RefusedCount& count : refused_counts()) {
     worst.*count.number = std::max(worst.*count.number, step.*count.number);
+    if (count.error != nullptr) worst.*count.error = std::max(worst.*count.error, step.*count.error);
+  }
 }
 
 /// Returns how many contacts, hooks and ropes took each route in the last step.
@@ -130,7 +132,10 @@ static Json json_of_routes(const RouteCounts& routes) {
 /// Returns the largest number of each kind in any step.
 static Json json_of_refused(const StepReport& worst) {
   Json json = Json::object();
-  for (const RefusedCount& count : refused_counts()) json[count.name] = worst.*count.number;
+  for (const RefusedCount& count : refused_counts()) {
+    json[count.name] = worst.*count.number;
+    if (count.error != nullptr) json[count.error_name] = worst.*count.error;
+  }
   return json;
 }
 
@@ -153,6 +158,8 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"largest_penetration", end.largest_penetration},
       {"largest_gap", end.largest_gap},
       {"contacts", record.last.contacts},
+      {"clusters", record.last.clusters},
+      {"rows_direct", record.last.rows_direct},
       {"routes", json_of_routes(record.last.routes)},
       {"refused", json_of_refused(record.worst)},
       {"broke", json_of_breaks(simulation)},

@@ -27,6 +27,7 @@ constexpr double kTooFlexible = 0.25;      ///< Share by which cloth bends farth
 constexpr double kSlackFrom = 1.25;
 constexpr double kFarStretched = 0.02;  ///< and stretches by this share.
 constexpr double kHardlyAny = 2;        ///< Share of extra bending beyond which the estimate gives no number.
+constexpr double kFarOff = 1e-3;        ///< Error of rows that were refused from which on it is reported [m].
 constexpr double kLost = 0.05;          ///< Share of a mesh's volume that its cells do not have.
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
 constexpr std::int32_t kMostSubsteps = 64;  ///< Largest number that a scene may have.
@@ -43,13 +44,12 @@ constexpr std::array kRefusedCounts = {
         "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
         "places that are not the same for many bodies"},
     RefusedCount{
-        &StepReport::islands_refused, "islands_refused",
-        "stacks were too large or too many to be solved directly, and may sink or fall",
-        "lower stacks (110 equal boxes stand), fewer bodies that lie on much lighter ones, or 32 substeps "
-        "with 'bias_sweeps' 8 and 'contact_hz' 200"},
-    RefusedCount{&StepReport::contacts_refused, "contacts_refused",
-                 "contacts were too many to be solved with hooks and ropes, and may sink",
-                 "fewer bodies on what hangs, masses that differ less, or more substeps"},
+        &StepReport::rows_refused, "rows_refused",
+        "contacts and hooks were too many to be solved as a whole: stacks may sink or fall, nets may gape",
+        "lower stacks (110 equal boxes stand), smaller nets, fewer bodies that lie on much lighter ones or "
+        "on "
+        "what hangs, masses that differ less, or 32 substeps with 'bias_sweeps' 8 and 'contact_hz' 200",
+        false, &StepReport::worst_error, "worst_error"},
     RefusedCount{
         &StepReport::coupled_groups_cut_short, "coupled_groups_cut_short",
         "groups of ropes and what they hold took too much work to be solved to the end, or were solved "
@@ -464,13 +464,18 @@ void RunWatch::look_at_report(const World& world, const StepReport& report) {
   for (std::size_t i = 0; i < kRefusedCounts.size(); ++i) {
     const RefusedCount& count = kRefusedCounts[i];
     const std::uint32_t number = report.*count.number;
-    if (number == 0) continue;
+    const double error = count.error != nullptr ? report.*count.error : 0;
+    if (number == 0 || (count.error != nullptr && error < kFarOff)) continue;
     const Watched* rope = count.of_rope ? least_rigid_rope(world) : nullptr;
     std::string what = count.what + text_of(" (%u in one step)", number);
+    if (count.error != nullptr)
+      what = count.what + text_of(" (%u rows in one step, off by up to %.3g m)", number, error);
     if (rope != nullptr) what += ", '" + rope->object.name + "' the most";
-    note(kNobody, kFirstCount + static_cast<int>(i), number,
+    note(kNobody, kFirstCount + static_cast<int>(i), count.error != nullptr ? error : number,
          {.what = std::move(what),
-          .worst = static_cast<double>(number),
+          .worst = count.error != nullptr ? error : static_cast<double>(number),
+          .limit = count.error != nullptr ? kFarOff : 0,
+          .unit = count.error != nullptr ? "m" : "",
           .time = world.time(),
           .cure = count.cure});
   }

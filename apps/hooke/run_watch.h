@@ -30,7 +30,9 @@ struct RefusedCount {
   const char* name;  ///< Name in reports.
   const char* what;  ///< Text before the number, for a reader.
   const char* cure;
-  bool of_rope = false;  ///< Whether the warning names the worst rope.
+  bool of_rope = false;                 ///< Whether the warning names the worst rope.
+  double StepReport::*error = nullptr;  ///< Length that tells whether it matters [m]; null if it always does.
+  const char* error_name = nullptr;     ///< Its name in reports.
 };
 
 /// Returns all that a step can refuse or leave undone.

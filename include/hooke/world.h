@@ -129,12 +129,21 @@ struct StepReport {
   std::uint32_t rows_quarantined = 0;
   std::uint32_t rope_solves = 0;        ///< Newton steps over ropes.
   std::uint32_t ropes_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
-  /// Stacks that need a direct solution and are beyond its budget, or have more than 256 bodies: they sink.
-  /// Those with too many bodies are counted when they are evaluated, once in 60 steps.
-  std::uint32_t islands_refused = 0;
-  /// Contacts that need to be solved with the hooks of what they press on and are beyond their number, and
-  /// those of ropes that touch each other in more places than can be solved.
-  std::uint32_t contacts_refused = 0;
+  /// Groups of rows that were solved as a whole: stacks that soft contacts do not hold, hooked bodies, ropes,
+  /// and coupled groups of these and what touches them.
+  std::uint32_t clusters = 0;
+  /// Rows of all clusters. A row is an equation: a contact has one for each point and three for friction and
+  /// twist, a hook one for each freedom that it takes, a segment or bend of a rope three.
+  std::uint32_t rows_direct = 0;
+  /// Rows that should be solved as a whole and are beyond a budget: those of stacks, of nets of hooks, of
+  /// bodies on what hangs, of edges and faces of cloth, and of ropes that touch each other. Weaker ways solve
+  /// them, and they sink or open. A stack that was refused counts until it is evaluated again, after a
+  /// second.
+  std::uint32_t rows_refused = 0;
+  /// The worst error left undone in the rows refused: the deepest overlap of such a contact, or the largest
+  /// gap of such a hook (World::hook_gap), where the substeps ended [m]. The overlap of two bodies follows to
+  /// first order from that at the start of the step.
+  double worst_error = 0;
   /// Coupled groups, of ropes and what hangs on them and touches them, that used up their budget of work, or
   /// for which no solution was found: they took one that takes no error back and can only lose energy.
   std::uint32_t coupled_groups_cut_short = 0;

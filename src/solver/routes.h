@@ -31,14 +31,14 @@
 ///             the first weighs; or a light hooked body is pressed on the ground by what it is hooked to
 ///             (solver/coupled/load_bearing_contacts.h). Rows of the contact alone pass on at most what stops the
 ///             light body, so the contact is solved with those hooks and ropes, by factorizations in each substep.
-///             512 manifolds at most: StepReport::contacts_refused counts the others that ask for it. So are all
+///             512 manifolds at most: StepReport::rows_refused counts the others that ask for it. So are all
 ///             other contacts of these bodies, and direct islands with such a body or a hooked one
 ///             (solver/coupled/coupled_manifolds.h). docs/decisions/0022-borne-contacts.md,
 ///             docs/decisions/0032-contacts-in-coupled-groups.md
 ///   direct    The contacts of its island sag, or would buckle, as soft rows: a high stack, a heavy body on light
 ///             ones. All contacts of the island are solved by one factorization in each substep
 ///             (solver/coupled/direct_islands.h). 256 bodies and 4e4 multiplications an island at most, 1e6 in
-///             all, the largest loads first: StepReport::islands_refused counts the others, which stay soft, and
+///             all, the largest loads first: StepReport::rows_refused counts the others, which stay soft, and
 ///             those that kDirectStepBudget gave up. An island is direct at once if something heavy arrives on
 ///             something light (docs/decisions/0035-arrivals-and-calm-solutions.md).
 ///             docs/decisions/0007-hard-islands.md
@@ -73,7 +73,8 @@
 ///                     that where masses are unlike (solver/joint/articulation_loops.cpp).
 ///                     docs/decisions/0017-articulations.md
 ///   block             The group is beyond its budget: plain ball hooks of bodies with few hooks are iterated, 16
-///                     side by side (solver/joint/ball_joints.h). docs/decisions/0008-hooks-that-do-not-diverge.md
+///                     side by side (solver/joint/ball_joints.h). StepReport::rows_refused counts their rows.
+///                     docs/decisions/0008-hooks-that-do-not-diverge.md
 ///   iterative         The same for all other hooks of such groups (solver/joint/iterative_joints.h).
 ///   coupled           An end of the hook is a point of a rope, cloth, solid or group of particles, or its group,
 ///                     ragdolls too, has contacts or points that are solved with it. All of it is one coupled

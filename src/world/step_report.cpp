@@ -1,5 +1,6 @@
 #include "world/step_report.h"
 
+#include "solver/cluster_counts.h"
 #include "solver/routes.h"
 
 #include <algorithm>
@@ -14,10 +15,6 @@ void count_refused(WorldData& world, StepReport& report) {
     report.rope_solves += rope_system.solves;
     report.ropes_unconverged += rope_system.unconverged ? 1 : 0;
   }
-  report.islands_refused = world.frame.direct_islands.refused + world.frame.direct_islands.too_large;
-  report.contacts_refused = static_cast<std::uint32_t>(world.frame.load_bearing.refused_manifolds.size());
-  for (const solver::CoupledGroup& group : world.derived.coupled_groups.live())
-    report.contacts_refused += group.refused;
   for (solver::CoupledGroup& group : world.derived.coupled_groups.groups)
     report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
   world.frame.surfaces.for_groups([&](const solver::SurfaceGroup& group) {
@@ -60,6 +57,13 @@ void count_routes(const WorldData& world, StepReport& report) {
   report.routes =
       solver::count_routes(world.tables, world.derived.joints, world.derived.rope_systems,
                            world.derived.coupled_groups, world.frame.direct_islands, world.frame.routes);
+  const solver::ClusterCounts counts = solver::count_clusters(
+      world.tables, world.derived.rope_systems, world.frame.direct_islands,
+      {world.derived.joints, world.derived.coupled_groups, world.frame.load_bearing.refused_manifolds});
+  report.clusters = counts.clusters;
+  report.rows_direct = counts.rows_direct;
+  report.rows_refused = counts.rows_refused;
+  report.worst_error = counts.worst_error;
 }
 
 void end_step(WorldData& world, double dt, StepReport& report) {

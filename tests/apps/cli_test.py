@@ -280,6 +280,35 @@ class Warnings(Program):
             self.assertTrue(line.endswith(one["cure"]) and one["cure"], line)
         return {one["object"]: one for one in report["problems"]}
 
+    def net_under_box(self, n):
+        """Returns n x n balls on hooks, held at their rim, under a box of 200 kg."""
+        mesh = 0.2
+        at = lambda i: [mesh * (i % n), 2, mesh * (i // n)]
+        bodies = [{"name": f"ball_{i}", "kind": "dynamic", "mass": 0.1, "shape": {"sphere": {"radius": 0.05}},
+                   "position": at(i)} for i in range(n * n)]
+        middle = mesh * (n - 1) / 2
+        bodies.append({"name": "box", "kind": "dynamic", "mass": 200, "position": [middle, 2.2, middle],
+                       "shape": {"box": {"half_extents": [0.3, 0.1, 0.3]}}})
+        hooks = []
+        for i in range(n * n):
+            x, y, z = at(i)
+            if i % n:
+                hooks.append({"a": f"ball_{i - 1}", "b": f"ball_{i}", "anchor": [x - mesh / 2, y, z]})
+            if i >= n:
+                hooks.append({"a": f"ball_{i - n}", "b": f"ball_{i}", "anchor": [x, y, z - mesh / 2]})
+            if i % n in (0, n - 1) or i // n in (0, n - 1):
+                hooks.append({"b": f"ball_{i}", "anchor": at(i)})
+        return {"bodies": bodies, "hooks": hooks}
+
+    def test_a_net_beyond_the_budget_of_direct_solutions(self):
+        told = self.problems(self.net_under_box(30))[""]
+        self.assertRegex(told["what"], r"too many to be solved as a whole: .*nets may gape \(5\d\d\d rows in one step")
+        self.assertIn("smaller nets", told["cure"])
+        self.assertGreater(told["worst"], 0.04)
+        self.assertEqual((told["unit"], told["limit"]), ("m", 1e-3))
+        within = self.problems(self.net_under_box(6)).get("", {"what": ""})
+        self.assertNotIn("too many", within["what"])
+
     def test_jelly_as_stiff_as_the_substeps_carry_and_stiffer(self):
         jelly = {"name": "jelly", "cells": [4, 4, 4], "size": [1, 1, 1], "density": 1000, "poisson_ratio": 0.25,
                  "position": [0, 5, 0]}

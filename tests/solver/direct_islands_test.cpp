@@ -138,7 +138,7 @@ TEST_SUITE("solver/direct_islands") {
       run(pyramid.world, 90);
       CHECK(place_of(pyramid, pyramid.boxes.size() - 1).y == doctest::Approx(top).epsilon(1e-5));
       CHECK(pyramid.world.measure().largest_penetration < 1e-5);
-      CHECK(pyramid.world.step(Real(1) / Real(60)).islands_refused == 0);
+      CHECK(pyramid.world.step(Real(1) / Real(60)).rows_refused == 0);
     }
   }
 

@@ -437,7 +437,7 @@ TEST_CASE(
   for (int i = 0; i < 5; ++i) {
     const StepReport report = world.step(Real(1) / Real(60));
     CHECK(report.healthy());
-    refused += report.contacts_refused;
+    refused += report.rows_refused;
   }
   CHECK(refused > 0);
 }

@@ -220,6 +220,7 @@ struct CoupledGroups {
   CoupledGroupScratch scratch;
 
   [[nodiscard]] std::span<CoupledGroup> live() { return {groups.data(), count}; }
+  [[nodiscard]] std::span<const CoupledGroup> live() const { return {groups.data(), count}; }
 };
 
 /// Sorts ropes, hooks at points and bodies into coupled groups, if anything about who holds or touches whom

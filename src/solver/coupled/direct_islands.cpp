@@ -32,6 +32,19 @@ std::int8_t next_direct_state(std::int8_t most, Real excess) {
   return most + 1 < kDirect ? static_cast<std::int8_t>(most + 1) : std::int8_t{kDirect + kStaysDirectSteps};
 }
 
+/// The direct_state of an island that waits for `steps`, a number below 0, until it is evaluated again.
+constexpr std::int8_t waiting(std::int8_t steps, bool refused) {
+  return refused && steps < 0 ? static_cast<std::int8_t>(steps + kNotEvaluatedSteps) : steps;
+}
+
+constexpr std::int8_t kRefusedSteps = waiting(kNotEvaluatedSteps, true);
+
+/// Minus the steps that the body's island waits, or its direct_state if it does not wait.
+std::int8_t steps_of(const Bodies& bodies, std::uint32_t body) {
+  const std::int8_t state = bodies.direct_state[body];
+  return is_refused(bodies, body) ? static_cast<std::int8_t>(state - kNotEvaluatedSteps) : state;
+}
+
 /// Twice the radius of a sphere within the smaller body.
 Real size_of(const ContactBlock& block, int lane, const Bodies& bodies) {
   const std::uint32_t a = block.record_a[lane] / 16;
@@ -65,7 +78,7 @@ void find_sags(const ContactBlock& block, Real stiffness, ContactBlock::Lane& sa
 /// their last such step, so that those that still are too large never count as others in between.
 bool is_evaluated(const ContactBlock& block, const Bodies& bodies) {
   for (int lane = 0; lane < block.count; ++lane) {
-    if (bodies.direct_state[block.record_a[lane] / 16] >= -1) return true;
+    if (steps_of(bodies, block.record_a[lane] / 16) >= -1) return true;
   }
   return false;
 }
@@ -115,6 +128,7 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
   to.high = std::max(to.high, of.high);
   to.count += of.count;
   to.stays_soft = to.stays_soft || of.stays_soft;
+  to.refused = to.refused || of.refused;
   to.least = std::min(to.least, of.least);
   to.most = std::max(to.most, of.most);
 }
@@ -126,10 +140,13 @@ Real excess_of(const IslandDemand& island) {
 }
 
 std::int8_t evaluate(const IslandDemand& island) {
-  if (island.count > kMaxDirectBodies) return kNotEvaluatedSteps;
+  if (island.count > kMaxDirectBodies)
+    return waiting(kNotEvaluatedSteps, !island.stays_soft && excess_of(island) > Real(1));
   // A wave of falling dominoes joins resting heaps one after the other: direct ones become soft with it.
-  if (island.least < 0)
-    return island.most >= kDirect ? std::int8_t{0} : static_cast<std::int8_t>(island.least + 1);
+  if (island.least < 0) {
+    if (island.most >= kDirect) return 0;
+    return waiting(static_cast<std::int8_t>(island.least + 1), island.refused);
+  }
   if (island.count < 2) return 0;
   return next_direct_state(island.most, excess_of(island));
 }
@@ -339,20 +356,15 @@ void find_islands_within_budget(const std::vector<Manifold>& manifolds, IslandMe
   direct.fits.assign(found, 0);
   direct.coupled.clear();
   double cost = 0;
-  std::uint32_t too_large = 0;
   for (std::size_t i = 0; i < found; ++i) {
     const DirectGraph& graph = direct.found[i];
     HOOKE_ASSERT(!graph.bodies.empty());
-    if (graph.bodies.size() > kMaxDirectBodies) ++too_large;
     DirectIsland& island = direct.islands[i];
     const bool fits = is_within_budget(graph, gravity, bodies, direct, island);
     direct.fits[i] = fits ? 1 : 0;
     if (fits) cost += island.pattern.operations;
   }
   if (cost > kDirectBudget) spend_budget(manifolds, members, bodies, direct);
-  // The evaluation at the step's end counts those that are too large, whether they are asked for here or not.
-  const auto fitting = static_cast<std::uint32_t>(std::count(direct.fits.begin(), direct.fits.end(), 1));
-  direct.refused = static_cast<std::uint32_t>(found) - fitting - too_large;
 }
 
 /// Whether the island has a body that is joined to something else.
@@ -385,7 +397,7 @@ void take_islands(Bodies& bodies, DirectIslands& direct) {
       if (fits) continue;
       // What would be direct for this step only, as new bodies are, is evaluated at its end like others.
       std::int8_t& state = bodies.direct_state[body];
-      state = state == kDirect ? std::int8_t{0} : kNotEvaluatedSteps;
+      state = state == kDirect ? std::int8_t{0} : kRefusedSteps;
     }
     if (taken_here && taken != i) std::swap(direct.islands[taken], direct.islands[i]);
     taken += taken_here ? 1 : 0;
@@ -400,9 +412,8 @@ void note_costly_step(const DirectIsland& island, DirectIslands& direct, Bodies&
   const std::int8_t before = direct.demands[direct.sets.root(island.graph.bodies.front())].most;
   const bool was_costly = before > kDirect && before <= kFresh;
   const std::int8_t left = was_costly ? static_cast<std::int8_t>(before - 1) : kFresh;
-  if (left == kDirect) ++direct.refused;
   for (const std::uint32_t body : island.graph.bodies)
-    bodies.direct_state[body] = left == kDirect ? kNotEvaluatedSteps : left;
+    bodies.direct_state[body] = left == kDirect ? kRefusedSteps : left;
 }
 
 /// Islands share one budget of work. Those that cost least get it first, so that it serves most of them.
@@ -430,7 +441,6 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   const IslandMembers members = inputs.members;
   Bodies& bodies = tables.bodies;
   direct.count = 0;
-  direct.refused = 0;
   direct.coupled.clear();
   HOOKE_ASSERT(std::is_sorted(awake.begin(), awake.end()) && members.size() == bodies.motion.size());
   expect_arrivals(manifolds, step, members, direct, bodies);
@@ -486,7 +496,6 @@ void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, Dire
 void evaluate_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                              const BodyContacts& contacts, IslandMembers members, DirectIslands& direct,
                              Bodies& bodies) {
-  direct.too_large = 0;
   // Without weight there are impacts, but no loads.
   if (step.gravity == Vec3{}) {
     for (const std::uint32_t body : awake) bodies.direct_state[body] = 0;
@@ -501,7 +510,8 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     IslandDemand own = direct.demands[body];
     add_own_weight(bodies.motion[body].inverse_mass, step, own);
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
-    own.least = own.most = bodies.direct_state[body];
+    own.refused = is_refused(bodies, body);
+    own.least = own.most = steps_of(bodies, body);
     // Ragdolls are solved in turn with soft contacts only, and soft islands that are fast fall anyway.
     const bool falls = own.most < kDirect && length(bodies.motion[body].v) > kDirectIslandSpeed;
     own.stays_soft = members[body] != Footing::kStands || falls;
@@ -515,8 +525,6 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     if (!is_moved(bodies, body)) continue;
     const std::uint32_t root = direct.sets.root(body);
     const IslandDemand& island = direct.demands[root];
-    const bool is_too_large = island.count > kMaxDirectBodies && !island.stays_soft;
-    if (root == body && is_too_large && excess_of(island) > Real(1)) ++direct.too_large;
     bodies.direct_state[body] = evaluate(island);
   }
   share_step_budget(direct, bodies);

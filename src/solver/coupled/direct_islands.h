@@ -63,7 +63,8 @@ struct IslandDemand {
   Real high = -std::numeric_limits<Real>::infinity();
   std::uint32_t count = 0;
   bool stays_soft = false;  ///< Whether it falls, or has bodies that do not stand.
-  std::int8_t least = std::numeric_limits<std::int8_t>::max();  ///< Smallest direct_state.
+  bool refused = false;     ///< Whether it asked for a direct solution before, and was refused.
+  std::int8_t least = std::numeric_limits<std::int8_t>::max();  ///< Smallest direct_state, or steps to wait.
   std::int8_t most = std::numeric_limits<std::int8_t>::min();
 };
 
@@ -72,9 +73,6 @@ struct DirectIslands {
 
   std::vector<DirectIsland> islands;  ///< The first `count` are those of this step, by lowest body.
   int count = 0;
-  std::uint32_t refused = 0;  ///< Number of islands over the budget that are small enough.
-  /// Number of islands that ask for a direct solution and have too many bodies.
-  std::uint32_t too_large = 0;
 
   // Scratch memory.
   base::DisjointSets sets;
@@ -97,6 +95,12 @@ struct DirectIslands {
   }
   [[nodiscard]] std::span<DirectIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }
 };
+
+/// Whether the island of the body asked for a direct solution and was refused: its contacts are soft, and
+/// sink more than they may.
+[[nodiscard]] inline bool is_refused(const state::Bodies& bodies, std::uint32_t body) {
+  return bodies.direct_state[body] < kNotEvaluatedSteps;
+}
 
 /// Finds the islands of direct bodies, with all that touches them. `awake` are rows in ascending order.
 /// Afterwards no body is new. Islands with a body that is `joined` are no direct islands: their contacts get
