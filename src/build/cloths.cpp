@@ -371,6 +371,27 @@ Result<Surface> make_surface(const ClothDesc& desc, const state::Tables& tables)
   return surface_of_mesh(desc, mesh);
 }
 
+Result<void> check_shares(const std::vector<double>& share) {
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    if (!(share[i] > 0)) {
+      return Error{ErrorCode::kOutOfRange, "cloth.mesh",
+                   "vertex " + std::to_string(i) + " belongs to no area"};
+    }
+  }
+  return {};
+}
+
+void append_places(const Surface& surface, const ClothDesc& desc, state::Tables& tables) {
+  if (surface.is_grid) {
+    append_connection_points(desc.connection_points, {},
+                             connection_points_of_grid(static_cast<std::uint32_t>(surface.columns),
+                                                       static_cast<std::uint32_t>(surface.rows)),
+                             tables);
+  } else {
+    append_connection_points(desc.connection_points, {desc.position, desc.rotation}, {}, tables);
+  }
+}
+
 }  // namespace
 
 Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
@@ -380,12 +401,8 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   surface.topology = geometry::compute_topology(surface.points.size(), surface.triangles);
   double area = 0;
   const std::vector<double> share = area_shares(surface, area);
-  for (std::size_t i = 0; i < share.size(); ++i) {
-    if (!(share[i] > 0)) {
-      return Error{ErrorCode::kOutOfRange, "cloth.mesh",
-                   "vertex " + std::to_string(i) + " belongs to no area"};
-    }
-  }
+  const Result<void> shared = check_shares(share);
+  if (!shared) return shared.error();
   if (desc.bend == ClothDesc::Bend::kIsometric) {
     const Result<void> flat = check_flat(surface);
     if (!flat) return flat.error();
@@ -414,14 +431,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   append_bends(surface, desc, tables);
   append_triangles(surface, mass / area, tables);
   append_tethers(surface, desc, tables);
-  if (surface.is_grid) {
-    append_connection_points(desc.connection_points, {},
-                             connection_points_of_grid(static_cast<std::uint32_t>(surface.columns),
-                                                       static_cast<std::uint32_t>(surface.rows)),
-                             tables);
-  } else {
-    append_connection_points(desc.connection_points, {desc.position, desc.rotation}, {}, tables);
-  }
+  append_places(surface, desc, tables);
   return {};
 }
 

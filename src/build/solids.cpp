@@ -383,18 +383,21 @@ std::vector<Triangle> surface_triangles(const SolidBody& body) {
   return triangles;
 }
 
+void check_body(const SolidDesc& desc, const TetrahedralMesh& mesh, Checks& checks) {
+  check_points(checks, desc.pins, desc.loads, mesh.points.size());
+  check_connection_points(checks, desc.connection_points, mesh.points.size());
+  for (std::size_t i = 0; checks.good() && i < mesh.tetrahedra.size(); ++i)
+    checks.require(volume_of(mesh, i) >= kSmallest, "size", "is too small: tetrahedra below 1e-15 m^3");
+}
+
 }  // namespace
 
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   const Result<SolidBody> body = make_body(desc, tables);
   if (!body) return body.error();
-  Checks checks("solid");
-  check_points(checks, desc.pins, desc.loads, body.value().mesh.points.size());
-  check_connection_points(checks, desc.connection_points, body.value().mesh.points.size());
-  if (!checks.good()) return checks.result();
   const TetrahedralMesh& mesh = body.value().mesh;
-  for (std::size_t i = 0; checks.good() && i < mesh.tetrahedra.size(); ++i)
-    checks.require(volume_of(mesh, i) >= kSmallest, "size", "is too small: tetrahedra below 1e-15 m^3");
+  Checks checks("solid");
+  check_body(desc, mesh, checks);
   if (!checks.good()) return checks.result();
   const Points points = make_points(body.value(), desc);
   for (std::size_t i = 0; i < points.mass.size(); ++i)

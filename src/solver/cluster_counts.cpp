@@ -21,9 +21,10 @@ class Counter {
 
   void count_direct(std::span<const RopeSystem> rope_systems, const DirectIslands& direct) {
     counts_.clusters += static_cast<std::uint32_t>(direct.count);
-    for (int i = 0; i < direct.count; ++i)
+    for (int i = 0; i < direct.count; ++i) {
       counts_.rows_direct +=
           static_cast<std::uint32_t>(direct.islands[static_cast<std::size_t>(i)].rows.size());
+    }
     for (const RopeSystem& rope : rope_systems) {
       if (!rope.in_coupled_group) add_cluster(rows_of(rope));
     }

@@ -182,9 +182,10 @@ double add_masses(TetrahedronBlocks& tetrahedra) {
   for (std::size_t i = 0; i < stiff.mass.size(); ++i)
     set(at(stiff.image, i) + stiff.mass[i] * at(stiff.direction, i), i, stiff.image);
   double curvature = product(stiff.direction, stiff.image);
-  for (const HoldingBody& body : stiff.holders)
+  for (const HoldingBody& body : stiff.holders) {
     curvature +=
         product(body.direction, product(body.mass, body.direction)) + product(body.direction, body.image);
+  }
   for (const PressedPoint& point : tetrahedra.pressed) {
     const DVec3 slip = slip_along(tetrahedra, point);
     curvature += dot(slip, point.drag * slip);
