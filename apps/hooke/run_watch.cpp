@@ -47,8 +47,7 @@ constexpr std::array kRefusedCounts = {
         &StepReport::rows_refused, "rows_refused",
         "contacts and hooks were too many to be solved as a whole: stacks may sink or fall, nets may gape",
         "lower stacks (110 equal boxes stand), smaller nets, fewer bodies that lie on much lighter ones or "
-        "on "
-        "what hangs, masses that differ less, or 32 substeps with 'bias_sweeps' 8 and 'contact_hz' 200",
+        "on what hangs, masses that differ less, or 32 substeps with 'bias_sweeps' 8 and 'contact_hz' 200",
         false, &StepReport::worst_error, "worst_error"},
     RefusedCount{
         &StepReport::coupled_groups_cut_short, "coupled_groups_cut_short",
@@ -467,9 +466,10 @@ void RunWatch::look_at_report(const World& world, const StepReport& report) {
     const double error = count.error != nullptr ? report.*count.error : 0;
     if (number == 0 || (count.error != nullptr && error < kFarOff)) continue;
     const Watched* rope = count.of_rope ? least_rigid_rope(world) : nullptr;
-    std::string what = count.what + text_of(" (%u in one step)", number);
-    if (count.error != nullptr)
-      what = count.what + text_of(" (%u rows in one step, off by up to %.3g m)", number, error);
+    std::string what =
+        count.what + (count.error != nullptr
+                          ? text_of(" (%u rows in one step, off by up to %.3g m)", number, error)
+                          : text_of(" (%u in one step)", number));
     if (rope != nullptr) what += ", '" + rope->object.name + "' the most";
     note(kNobody, kFirstCount + static_cast<int>(i), count.error != nullptr ? error : number,
          {.what = std::move(what),

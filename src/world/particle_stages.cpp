@@ -97,14 +97,6 @@ void solve_passes(Rows& rows, Division division, int grain, state::Particles& pa
   }
 }
 
-/// Whether a tetrahedron was stiff when coefficients were prepared, or flow has made one stiff since.
-bool is_stiff(const solver::SoftGroup& group) {
-  return group.tetrahedra.any_stiff ||
-         std::any_of(
-             group.yields.tetrahedra.begin(), group.yields.tetrahedra.end(),
-             [&](const solver::TetrahedronYield& yield) { return group.tetrahedra.is_stiff(yield.lane); });
-}
-
 /// Solves the rows of solids at once, with what presses on their points and with each other. What does not
 /// stay where it touches is let go, and the solution goes on from there.
 void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing, Real h, Division division,
@@ -257,12 +249,15 @@ void refresh_derived(WorldData& world) {
 
 void prepare_particle_rows(WorldData& world, Real h) {
   state::check_tables(world.tables);  // By now all contacts have been found.
-  for_soft_groups(world, [h](solver::SoftGroup& group, Division) { solver::prepare_soft_group(group, h); });
+  const auto prepare = [h](solver::SoftGroup& group, Division) { solver::prepare_soft_group(group, h); };
+  for_soft_groups(world, prepare);
+  if (solver::separate_stiff_solids(world.tables, world.pool->workers(), world.derived.soft))
+    for_soft_groups(world, prepare);
 }
 
 void begin_step(WorldData& world, double dt) {
   state::Tables& tables = world.tables;
-  solver::mark_stiff_solids(world.derived.soft, tables.objects.size(), world.frame.surfaces);
+  solver::mark_stiff_solids(tables, world.derived.soft, world.frame.surfaces);
   solver::begin_surface_step(tables, tables.desc.substeps * tables.desc.particle_substeps,
                              world.frame.surfaces);
   read_wind(world, tables.time + 0.5 * dt);
@@ -353,8 +348,7 @@ void rebase_origins(WorldData& world) {
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   std::vector<int>& pressing = world.frame.pressing_points;
-  const std::vector<solver::SoftGroup>& groups = world.derived.soft.groups;
-  if (std::any_of(groups.begin(), groups.end(), is_stiff)) solver::count_pressing_points(tables, h, pressing);
+  if (world.frame.surfaces.any_stiff) solver::count_pressing_points(tables, h, pressing);
   solver::JoinedSolids& joined = world.frame.joined_solids;
   solver::list_joined_solids(tables, world.frame.surfaces, h, world.derived.soft, joined);
   for (const solver::JoinedSolids::System& system : joined.systems)
@@ -362,7 +356,7 @@ void solve_solids(WorldData& world, Real h) {
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
     solver::TetrahedronBlocks& tetrahedra = group.tetrahedra;
     if (tetrahedra.blocks.empty() || joined.has(world.derived.soft, group)) return;
-    if (is_stiff(group)) {
+    if (group.tetrahedra.any_stiff) {
       solver::TetrahedronBlocks* const part[] = {&tetrahedra};
       solve_stiff_solids(tables, pressing, h, division, {.parts = part, .rows = {}, .ties = {}});
     } else {

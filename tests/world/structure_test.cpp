@@ -91,6 +91,7 @@ class Changing {
     solid.size = {Real(0.3), Real(0.3), Real(0.3)};
     solid.position = place;
     if (random_() % 2 == 0) solid.yield_stress = Real(50);
+    if (random_() % 3 == 0) solid.young_modulus = Real(1e8);  // Stiff: solved as a whole.
     solid.damping = random_() % 2 == 0 ? Real(0.01) : Real(0);
     return solid;
   }
@@ -149,6 +150,30 @@ std::vector<DVec3> fallen(std::optional<Real> stiffness_before, std::optional<Re
   return places;
 }
 
+/// Where the points of a soft jelly are that swings on a hook for half a second, alone or with another one
+/// far away.
+std::vector<DVec3> swung(std::optional<Real> young_modulus_of_other) {
+  World world = make_world();
+  SolidDesc solid;
+  solid.cells = {2, 2, 2};
+  solid.size = {Real(0.3), Real(0.3), Real(0.3)};
+  const SolidId id = take(world.add_solid(solid));
+  HookDesc hook;
+  hook.a.point = point(id, 0);
+  hook.anchor = world.positions(id)[0];
+  take(world.add_hook(hook));
+  if (young_modulus_of_other) {
+    solid.position.x = 20;
+    solid.young_modulus = *young_modulus_of_other;
+    take(world.add_solid(solid));
+  }
+  run(world, 30);
+  std::vector<DVec3> places;
+  const PointView view = world.positions(id);
+  for (std::size_t i = 0; i < view.size(); ++i) places.push_back(view[i]);
+  return places;
+}
+
 }  // namespace
 
 TEST_SUITE("world/structure") {
@@ -171,6 +196,11 @@ TEST_SUITE("world/structure") {
       CHECK(fallen(other, {}) == alone);
       CHECK(fallen({}, other) == alone);
     }
+  }
+
+  TEST_CASE("a jelly moves to the bit as it does without another one far away, however stiff that is") {
+    const std::vector<DVec3> alone = swung({});
+    for (const Real other : {Real(1e4), Real(1e7), Real(1e10)}) CHECK(swung(other) == alone);
   }
 }
 

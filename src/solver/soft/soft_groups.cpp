@@ -69,8 +69,13 @@ class Refresh {
     if (count > objects_.size() - object) return nullptr;
     for (std::size_t i = 0; i < count; ++i) {
       if (objects_[object + i].revision != group.revisions[i]) return nullptr;
+      if (count > 1 && is_stiff(object + i)) return nullptr;
     }
     return &group;
+  }
+
+  [[nodiscard]] bool is_stiff(std::size_t object) const {
+    return std::binary_search(out_.stiff.begin(), out_.stiff.end(), objects_[object].revision);
   }
 
   /// Number of particles and rows of the objects [first, end).
@@ -91,7 +96,8 @@ class Refresh {
 
   void keep(std::size_t object, SoftGroup& group) {
     const std::size_t end = object + group.revisions.size();
-    if (is_pending() && takes_in(size_between(first_, end_), group.size, size_between(first_, end))) {
+    if (is_pending() && !is_stiff(object) &&
+        takes_in(size_between(first_, end_), group.size, size_between(first_, end))) {
       end_ = end;
       return;
     }
@@ -101,12 +107,16 @@ class Refresh {
   }
 
   void copy_anew(std::size_t object) {
-    if (is_pending() && size_between(first_, object + 1) > kMostRowsOfSharedGroup) build_pending();
+    const bool alone = is_stiff(object);
+    if (is_pending() && (alone || size_between(first_, object + 1) > kMostRowsOfSharedGroup)) build_pending();
     if (!is_pending()) first_ = object;
     end_ = object + 1;
+    if (alone) return build_pending();
     while (!out_.groups.empty()) {
       const SoftGroup& last = out_.groups.back();
-      if (!takes_in(size_between(first_, end_), last.size, size_between(last.first_object, end_))) break;
+      if (is_stiff(last.first_object) ||
+          !takes_in(size_between(first_, end_), last.size, size_between(last.first_object, end_)))
+        break;
       first_ = last.first_object;
       out_.groups.pop_back();
     }
@@ -168,6 +178,33 @@ void refresh_soft_groups(const state::Tables& tables, int workers, SoftGroups& g
       groups.group_of[object] = i;
   }
   divide_work(workers, groups);
+}
+
+bool separate_stiff_solids(const state::Tables& tables, int workers, SoftGroups& groups) {
+  const std::span<const Deformable> objects = tables.objects;
+  const std::size_t known = groups.stiff.size();
+  for (const SoftGroup& group : groups.groups) {
+    if (group.revisions.size() == 1 || !group.tetrahedra.any_stiff) continue;
+    for (std::size_t lane = 0; lane < group.tetrahedra.laws.size(); ++lane) {
+      if (!group.tetrahedra.is_stiff(lane)) continue;
+      const std::uint32_t row = group.tetrahedra.first_row + group.tetrahedra.laws[lane].row;
+      const auto after = std::upper_bound(
+          objects.begin(), objects.end(), row,
+          [](std::uint32_t of, const Deformable& object) { return of < object.tetrahedra.first; });
+      groups.stiff.push_back((after - 1)->revision);
+    }
+  }
+  if (groups.stiff.size() == known) return false;
+  std::sort(groups.stiff.begin(), groups.stiff.end());
+  std::vector<std::uint64_t> present;
+  for (const Deformable& object : objects) {
+    if (std::binary_search(groups.stiff.begin(), groups.stiff.end(), object.revision))
+      present.push_back(object.revision);
+  }
+  std::sort(present.begin(), present.end());
+  groups.stiff = std::move(present);
+  refresh_soft_groups(tables, workers, groups);
+  return true;
 }
 
 void prepare_soft_group(SoftGroup& group, Real h) {

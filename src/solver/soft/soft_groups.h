@@ -21,7 +21,8 @@
 ///
 /// No row joins two objects. So the colors of an object, and the order in which its rows act on its
 /// particles, are the same in every group, and which objects share a group changes no bit. A large object is
-/// a group of its own. Small ones share groups, because lanes would be empty otherwise.
+/// a group of its own. So is a stiff solid, whose rows are solved at once and would have to wait for those of
+/// others. Other small ones share groups, because lanes would be empty otherwise.
 
 namespace hooke::solver {
 
@@ -49,6 +50,7 @@ struct SoftGroups {
   std::vector<std::uint32_t> divided;   ///< Groups so large that all threads share each of their passes.
   std::size_t whole_size = 0;           ///< Sum of the sizes of `whole`.
   std::uint64_t built_objects = 0;      ///< How often an object was copied, since the beginning.
+  std::vector<std::uint64_t> stiff;     ///< Revisions of objects found stiff, ascending: they share no group.
 
   std::vector<SoftGroup> before;  ///< Scratch memory of refresh_soft_groups, as is all below.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> before_by_revision;
@@ -60,5 +62,9 @@ void refresh_soft_groups(const state::Tables& tables, int workers, SoftGroups& g
 
 /// Sets the coefficients of all rows of a group for a substep of `h` [s].
 void prepare_soft_group(SoftGroup& group, Real h);
+
+/// Gives each solid with a stiff row, which prepare_soft_group has found, a group of its own. Returns whether
+/// any group is new, so that all have to be prepared again.
+[[nodiscard]] bool separate_stiff_solids(const state::Tables& tables, int workers, SoftGroups& groups);
 
 }  // namespace hooke::solver

@@ -3,10 +3,8 @@
 #include "math/symmetric.h"
 #include "solver/solid/solid_tuning.h"
 #include "solver/solid/stiff_ties.h"
-#include "solver/solid/tetrahedron_blocks.h"
+#include "solver/solid/weighted_points.h"
 
-#include <array>
-#include <cstdint>
 #include <span>
 
 /// \file
@@ -24,16 +22,14 @@ namespace hooke::solver {
 /// solution before found, so that the sides come to keep their least speed (augmented Lagrangian, Hestenes
 /// 1969).
 struct StiffRow {
-  std::array<std::uint32_t, 4> part = {};   ///< Of the system, by corner.
-  std::array<std::uint32_t, 4> point = {};  ///< Row of each corner's particle, from its part's first one.
-  std::array<double, 4> weight = {};        ///< Those of the second side are negative.
-  DVec3 normal = {};                        ///< Unit vector from the second side to the first.
-  double friction = 0;                      ///< Coefficient of the pair.
-  double least_speed = 0;                   ///< At which the sides are to part, at least [m/s].
-  DVec3 before = {};                        ///< Velocity of the first side relative to the second [m/s].
-  double stiffness = 0;                     ///< [kg]
-  double drag = 0;                          ///< Of friction, across the normal [kg].
-  double carried = 0;                       ///< Impulse along the normal that is given anyway [N s].
+  WeightedPoints<4> corners = {};
+  DVec3 normal = {};       ///< Unit vector from the second side to the first.
+  double friction = 0;     ///< Coefficient of the pair.
+  double least_speed = 0;  ///< At which the sides are to part, at least [m/s].
+  DVec3 before = {};       ///< Velocity of the first side relative to the second [m/s].
+  double stiffness = 0;    ///< [kg]
+  double drag = 0;         ///< Of friction, across the normal [kg].
+  double carried = 0;      ///< Impulse along the normal that is given anyway [N s].
   bool pushes = false;
   bool let_go = false;  ///< It does not push in the next solution either.
 
@@ -46,7 +42,7 @@ struct StiffRow {
 
 /// What is solved at once: groups of solids, the contacts between them, and their hooks.
 struct StiffSystem {
-  std::span<TetrahedronBlocks* const> parts;
+  StiffParts parts;
   std::span<StiffRow> rows;
   std::span<StiffTie> ties;
   double size = 0;                       ///< Square of the residual, by per_diagonal [J].

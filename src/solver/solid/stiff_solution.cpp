@@ -68,8 +68,7 @@ Six solved(const std::array<Six, 6>& factor, Six x) {
 
 /// The part of the diagonal that rows of stress and of contact give.
 Symmetric3<double> diagonal_of(const StiffSolution& stiff, std::size_t i) {
-  const double* d = stiff.diagonal.data() + 8 * i;
-  return Symmetric3<double>{d[0], d[1], d[2], d[4], d[5], d[6]} + stiff.contact_diagonal[i];
+  return stress_diagonal(stiff, i) + stiff.contact_diagonal[i];
 }
 
 const PressedPoint* pressed_point(const TetrahedronBlocks& tetrahedra, std::size_t i) {
@@ -279,7 +278,8 @@ bool lacks_impulse(double error, double lacking, double changing) {
 /// Whether a body or a solid as a whole lacks so much of its impulse that it would move otherwise than its
 /// points do, or not keep its momentum. Points of steel resist with a million times their mass, so that
 /// little of the residual says so.
-bool lacks_motion(double error, const StiffSolution& stiff) {
+bool lacks_motion(double error, const TetrahedronBlocks& tetrahedra) {
+  const StiffSolution& stiff = tetrahedra.stiff;
   for (const HoldingBody& body : stiff.holders) {
     if (lacks_impulse(error, body.error, product(body.change, product(body.mass, body.change)))) return true;
   }
@@ -289,7 +289,10 @@ bool lacks_motion(double error, const StiffSolution& stiff) {
   double mass = 0;
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
     const DVec3 change = at(stiff.change, i);
-    lacking += at(stiff.residual, i);
+    // Of a point that is held the residual is what its holder gives, and of one that slides also friction.
+    const PressedPoint* point = pressed_point(tetrahedra, i);
+    lacking +=
+        point != nullptr ? point->free * (at(stiff.residual, i) + point->drag_lacks) : at(stiff.residual, i);
     changing += dot(change, stiff.mass[i] * change);
     mass += stiff.mass[i].xx;
   }
@@ -347,7 +350,7 @@ void aim(const state::Particles& particles, StiffSystem& system) {
   add_row_forces(system);
   add_tie_forces(system);
   for (const StiffTie& tie : system.ties) {
-    if (tie.mover == StiffTie::kNone) system.parts[tie.part[0]]->stiff.is_anchored = true;
+    if (tie.mover == StiffTie::kNone) system.parts[tie.points.part[0]]->stiff.is_anchored = true;
   }
   system.size = sum_of_parts(system, precondition);
   if (!(system.first_size > 0)) system.first_size = system.size;
@@ -358,7 +361,7 @@ bool needs_direction(const StiffSystem& system) {
   if (system.solutions >= kMostStiffSolidDirections || !(system.size > 0)) return false;
   return system.size > system.error * system.error * system.first_size ||
          std::any_of(system.parts.begin(), system.parts.end(),
-                     [&](const TetrahedronBlocks* part) { return lacks_motion(system.error, part->stiff); });
+                     [&](const TetrahedronBlocks* part) { return lacks_motion(system.error, *part); });
 }
 
 bool may_solve_again(const StiffSystem& system) {
@@ -372,7 +375,7 @@ bool sharpen(StiffSystem& system) {
 }
 
 bool is_solved(const StiffSystem& system) {
-  return system.error <= kStiffSolidError && !needs_direction(system);
+  return system.error <= kStiffSolidError && system.solutions < kMostStiffSolidDirections;
 }
 
 void advance(StiffSystem& system) {

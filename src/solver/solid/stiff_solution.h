@@ -41,7 +41,7 @@ void aim(const state::Particles& particles, StiffSystem& system);
 /// Lets the next solution have a smaller error. Returns false if it is the smallest already.
 [[nodiscard]] bool sharpen(StiffSystem& system);
 
-/// Whether all is solved down to the smallest error.
+/// Whether the last solution came down to the smallest error before directions ran out.
 [[nodiscard]] bool is_solved(const StiffSystem& system);
 
 /// Goes along the direction as far as its image says, and finds the next one.

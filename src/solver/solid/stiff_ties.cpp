@@ -12,23 +12,20 @@ namespace {
 
 using math::Symmetric3;
 
-StiffSolution& solution_of(const StiffSystem& system, const StiffTie& tie, std::size_t k) {
-  return system.parts[tie.part[k]]->stiff;
+/// The solution that has the body of a hook, that of its first point's part.
+StiffSolution& solution_of(const StiffSystem& system, const StiffTie& tie) {
+  return system.parts[tie.points.part[0]]->stiff;
 }
 
 /// The body that a hook holds, null if the other end does not give way.
 HoldingBody* mover_of(const StiffSystem& system, const StiffTie& tie) {
-  return tie.mover == StiffTie::kNone ? nullptr : &solution_of(system, tie, 0).holders[tie.mover];
+  return tie.mover == StiffTie::kNone ? nullptr : &solution_of(system, tie).holders[tie.mover];
 }
 
 /// The velocity at which the points leave the other end, in a vector and the six numbers of bodies.
 DVec3 leaving(const StiffSystem& system, const StiffTie& tie, std::vector<double> StiffSolution::*of_points,
               HoldingBody::Six HoldingBody::*of_bodies) {
-  DVec3 u;
-  for (std::size_t k = 0; k < tie.count; ++k) {
-    const double* at = (solution_of(system, tie, k).*of_points).data() + 4 * tie.point[k];
-    u += tie.weight[k] * DVec3{at[0], at[1], at[2]};
-  }
+  const DVec3 u = tie.points.sum(system.parts, of_points);
   const HoldingBody* mover = mover_of(system, tie);
   return mover != nullptr ? u - velocity_at(mover->*of_bodies, tie.lever) : u;
 }
@@ -36,27 +33,8 @@ DVec3 leaving(const StiffSystem& system, const StiffTie& tie, std::vector<double
 /// Adds an impulse to the points of a hook, and the opposite one to the body.
 void push_ends(const StiffSystem& system, const StiffTie& tie, DVec3 impulse,
                std::vector<double> StiffSolution::*to_points, HoldingBody::Six HoldingBody::*to_bodies) {
-  for (std::size_t k = 0; k < tie.count; ++k) {
-    double* at = (solution_of(system, tie, k).*to_points).data() + 4 * tie.point[k];
-    at[0] += tie.weight[k] * impulse.x;
-    at[1] += tie.weight[k] * impulse.y;
-    at[2] += tie.weight[k] * impulse.z;
-  }
+  tie.points.push(system.parts, impulse, to_points);
   if (HoldingBody* mover = mover_of(system, tie)) add_impulse(-impulse, tie.lever, mover->*to_bodies);
-}
-
-/// How hard the points of a hook are to move, each by itself, as a mean over directions [kg].
-double resisting_mass(const state::Particles& particles, const StiffSystem& system, const StiffTie& tie) {
-  double mobility = 0;
-  for (std::size_t k = 0; k < tie.count; ++k) {
-    const TetrahedronBlocks& part = *system.parts[tie.part[k]];
-    const auto inverse_mass =
-        static_cast<double>(particles.velocity[part.first_particle + tie.point[k]].inverse_mass);
-    if (!(inverse_mass > 0)) continue;
-    const double* d = part.stiff.diagonal.data() + 8 * tie.point[k];
-    mobility += tie.weight[k] * tie.weight[k] / (1 / inverse_mass + (d[0] + d[4] + d[6]) / 3);
-  }
-  return mobility > 0 ? 1 / mobility : 0;
 }
 
 DVec3 impulse_of(const StiffSystem& system, const StiffTie& tie) {
@@ -84,11 +62,14 @@ HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body, double
 
 void prepare_ties(const state::Tables& t, const StiffSystem& system) {
   for (StiffTie& tie : system.ties) {
-    tie.stiffness = kStiffRowShare * resisting_mass(t.particles, system, tie);
+    tie.stiffness = kStiffRowShare * tie.points.resisting_mass(
+                                         t.particles, system.parts, [](const Symmetric3<double>& stress) {
+                                           return (stress.xx + stress.yy + stress.zz) / 3;
+                                         });
     tie.carried = {};
     tie.mover = StiffTie::kNone;
     if (tie.body == StiffTie::kNone) continue;
-    StiffSolution& stiff = solution_of(system, tie, 0);
+    StiffSolution& stiff = solution_of(system, tie);
     if (stiff.find_holder(tie.body) == nullptr)
       stiff.holders.push_back(holding_body(t.bodies, tie.body, tie.share));
     const HoldingBody* holder = stiff.find_holder(tie.body);
@@ -98,9 +79,10 @@ void prepare_ties(const state::Tables& t, const StiffSystem& system) {
 
 void add_tie_diagonals(const StiffSystem& system) {
   for (const StiffTie& tie : system.ties) {
-    for (std::size_t k = 0; k < tie.count; ++k) {
-      Symmetric3<double>& to = solution_of(system, tie, k).contact_diagonal[tie.point[k]];
-      to = to + Symmetric3<double>::diagonal(tie.weight[k] * tie.weight[k] * tie.stiffness);
+    const auto& points = tie.points;
+    for (std::size_t k = 0; k < points.count; ++k) {
+      Symmetric3<double>& to = system.parts[points.part[k]]->stiff.contact_diagonal[points.point[k]];
+      to = to + Symmetric3<double>::diagonal(points.weight[k] * points.weight[k] * tie.stiffness);
     }
     if (HoldingBody* mover = mover_of(system, tie))
       add_mass(Symmetric3<double>::diagonal(tie.stiffness), tie.lever, mover->tied);
@@ -125,8 +107,9 @@ bool renew_ties(const StiffSystem& system) {
   bool any = false;
   for (StiffTie& tie : system.ties) {
     const DVec3 impulse = impulse_of(system, tie);
-    any = any || length(impulse - tie.carried) > kStiffRowError * length(impulse);
+    if (!(length(impulse - tie.carried) > kStiffRowError * length(impulse))) continue;
     tie.carried = impulse;
+    any = true;
   }
   return any;
 }
@@ -134,10 +117,11 @@ bool renew_ties(const StiffSystem& system) {
 void release_ties(const StiffSystem& system, state::Particles& particles) {
   for (const StiffTie& tie : system.ties) {
     const DVec3 impulse = impulse_of(system, tie);
-    for (std::size_t k = 0; k < tie.count; ++k) {
+    const auto& points = tie.points;
+    for (std::size_t k = 0; k < points.count; ++k) {
       state::VelocityRecord& record =
-          particles.velocity[system.parts[tie.part[k]]->first_particle + tie.point[k]];
-      record.v -= vector_cast<Real>((tie.weight[k] * static_cast<double>(record.inverse_mass)) * impulse);
+          particles.velocity[system.parts[points.part[k]]->first_particle + points.point[k]];
+      record.v -= vector_cast<Real>((points.weight[k] * static_cast<double>(record.inverse_mass)) * impulse);
     }
   }
 }

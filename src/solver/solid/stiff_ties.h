@@ -1,11 +1,10 @@
 #pragma once
 
-#include "solver/solid/tetrahedron_blocks.h"
+#include "solver/solid/weighted_points.h"
+#include "state/hooks.h"
 #include "state/tables.h"
 
-#include <array>
 #include <cstdint>
-#include <span>
 
 /// \file
 /// Ball hooks of stiff solids in the stiff solution. The solution finds what points do under stress while
@@ -25,14 +24,10 @@ struct StiffSystem;
 /// u being the velocity at which the points leave the other end, after the solution. `carried` is what the
 /// solution before found, so that u vanishes (augmented Lagrangian, Hestenes 1969).
 struct StiffTie {
-  static constexpr std::size_t kMostPoints = 8;
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  std::array<std::uint32_t, kMostPoints> part = {};   ///< Of the system, by point.
-  std::array<std::uint32_t, kMostPoints> point = {};  ///< Row of each particle, from its part's first one.
-  std::array<double, kMostPoints> weight = {};        ///< Those of another solid are negative.
-  std::size_t count = 0;                              ///< Number of points.
-  std::uint32_t body = kNone;                         ///< Row of the other end, if it gives way.
+  WeightedPoints<2 * state::HookPlace::kMostParticles> points = {};
+  std::uint32_t body = kNone;   ///< Row of the other end, if it gives way.
   std::uint32_t mover = kNone;  ///< That body in StiffSolution::holders of the first point's part.
   double share = 1;             ///< Share of its mass that this part has [ratio].
   DVec3 lever = {};             ///< From its center of mass [m].

@@ -158,7 +158,8 @@ struct StiffSolution {
                                                        ///< does not move.
   std::vector<HoldingBody> holders;                    ///< In the order in which points name them.
   bool is_anchored = false;  ///< Something that does not move holds points, or hooks do.
-  bool unconverged = false;  ///< Whether they were too few in some substep; read and cleared by end_step.
+  bool unconverged =
+      false;  ///< Whether directions were too few in some substep; read and cleared by end_step.
 
   /// The holder with this body, null if it holds no point.
   [[nodiscard]] const HoldingBody* find_holder(std::uint32_t body) const {
@@ -173,6 +174,12 @@ struct StiffSolution {
   }
 };
 
+/// How rows of stress resist the motion of a particle by itself [kg].
+inline math::Symmetric3<double> stress_diagonal(const StiffSolution& stiff, std::size_t i) {
+  const double* d = stiff.diagonal.data() + 8 * i;
+  return {d[0], d[1], d[2], d[4], d[5], d[6]};
+}
+
 struct TetrahedronBlocks {
   std::uint32_t first_particle = 0;  ///< Row of the particle that records count from.
   std::uint32_t first_row = 0;       ///< Row of the table that laws count from.
@@ -182,7 +189,7 @@ struct TetrahedronBlocks {
   std::vector<Real> volume_at;  ///< Volume of the tetrahedra about each particle, from the first on [m^3].
   Real inverse_h = Real(0);     ///< 1 / h [1/s]; written by prepare_tetrahedra.
   bool any_damping = false;     ///< Whether any row is damped.
-  bool any_stiff = false;  ///< Whether any row was stiff when they were prepared; it may become so by flow.
+  bool any_stiff = false;  ///< Whether any row was stiff when they were prepared: all are solved at once.
   std::vector<PressedPoint> pressed;  ///< In the order of particles. Lives until contacts are solved.
   /// 1 + the row in `pressed` of each particle, from the first one on; 0 for those that nothing presses on.
   std::vector<std::uint32_t> pressed_of;

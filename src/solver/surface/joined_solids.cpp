@@ -31,12 +31,11 @@ StiffRow stiff_row(const state::Tables& t, const SurfaceContacts& contacts, cons
     const std::uint32_t object = contacts.surfaces.object_of(row.vertex[k]);
     const std::uint32_t particle = contacts.surfaces.particle[row.vertex[k]];
     const SoftGroup& group = soft.groups[soft.group_of[object]];
-    result.part[k] = part_of[soft.group_of[object]];
-    result.point[k] = particle - group.tetrahedra.first_particle;
-    result.weight[k] = static_cast<double>(row.weight[k]);
+    const auto weight = static_cast<double>(row.weight[k]);
+    result.corners.add(part_of[soft.group_of[object]], particle - group.tetrahedra.first_particle, weight);
     const DVec3 x = t.objects[object].origin - origin + vector_cast<double>(t.particles.position[particle].x);
-    between += result.weight[k] * x;
-    result.before += result.weight[k] * vector_cast<double>(t.particles.velocity[particle].v);
+    between += weight * x;
+    result.before += weight * vector_cast<double>(t.particles.velocity[particle].v);
   }
   const double gap = dot(result.normal, between) - static_cast<double>(row.distance);
   const double rate = -gap / static_cast<double>(h);
@@ -160,9 +159,7 @@ StiffTie tie_of(const state::Tables& t, const SoftGroups& soft, const std::vecto
     for (std::uint32_t i = 0; i < end->particle_count; ++i) {
       const double weight = side * static_cast<double>(end->weight[i]);
       const std::uint32_t particle = end->particle[i];
-      tie.part[tie.count] = part_of[group];
-      tie.point[tie.count] = particle - soft.groups[group].tetrahedra.first_particle;
-      tie.weight[tie.count++] = weight;
+      tie.points.add(part_of[group], particle - soft.groups[group].tetrahedra.first_particle, weight);
       gap += weight * (t.objects[end->object].origin + vector_cast<double>(t.particles.position[particle].x));
       tie.before += weight * vector_cast<double>(t.particles.velocity[particle].v);
     }
@@ -219,14 +216,15 @@ void list_ties(const state::Tables& t, Real h, const SoftGroups& soft, JoinedSol
 
 }  // namespace
 
-void mark_stiff_solids(const SoftGroups& soft, std::size_t objects, SurfaceContacts& contacts) {
-  contacts.stiff.assign(objects, 0);
+void mark_stiff_solids(const state::Tables& t, const SoftGroups& soft, SurfaceContacts& contacts) {
+  contacts.stiff.assign(t.objects.size(), 0);
   contacts.any_stiff = false;
   for (const SoftGroup& group : soft.groups) {
     if (!group.tetrahedra.any_stiff) continue;
     contacts.any_stiff = true;
-    std::fill(contacts.stiff.begin() + group.first_object, contacts.stiff.begin() + group.end_object(),
-              std::uint8_t{1});
+    // Small cloths share groups with solids.
+    for (std::size_t i = group.first_object; i < group.end_object(); ++i)
+      contacts.stiff[i] = t.objects[i].tetrahedra.count > 0 ? 1 : 0;
   }
 }
 

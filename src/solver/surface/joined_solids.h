@@ -43,7 +43,7 @@ struct JoinedSolids {
 };
 
 /// Marks the solids whose contacts belong to their stiff solution. Call it before contacts are found.
-void mark_stiff_solids(const SoftGroups& soft, std::size_t objects, SurfaceContacts& contacts);
+void mark_stiff_solids(const state::Tables& tables, const SoftGroups& soft, SurfaceContacts& contacts);
 
 /// Lists the solids that are solved at once, and the contacts between them and their hooks in a substep of
 /// `h` [s].
