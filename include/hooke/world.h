@@ -199,6 +199,10 @@ class Snapshot {
   /// Makes an empty snapshot, which cannot be restored.
   Snapshot() = default;
 
+  /// Memory that the content takes [bytes]; 0 for an empty one. What objects share with each other and with
+  /// the World does not count: meshes, forms at rest, names.
+  [[nodiscard]] std::size_t bytes() const;
+
  private:
   friend class World;
   explicit Snapshot(std::shared_ptr<const SnapshotData> data) : data_(std::move(data)) {}
@@ -370,6 +374,13 @@ class World {
   [[nodiscard]] DVec3 center_of_mass(BodyId id) const;
   /// Mass of a body [kg]; 0 for one that is not dynamic.
   [[nodiscard]] Real mass(BodyId id) const;
+  ///@{
+  /// Mass of all points of an object, pinned ones and loads too [kg].
+  [[nodiscard]] Real mass(RopeId id) const;
+  [[nodiscard]] Real mass(ClothId id) const;
+  [[nodiscard]] Real mass(SolidId id) const;
+  [[nodiscard]] Real mass(ParticlesId id) const;
+  ///@}
   /// Kinetic energy of a dynamic body, and its potential energy in gravity and in uniform and inverse square
   /// fields, as measure() counts them for all; zeros for a body that is not dynamic.
   [[nodiscard]] Energy energy(BodyId id) const;
@@ -393,6 +404,8 @@ class World {
   /// Lists the names that HookEnd::connection_point may have for an end, the object's own first; none for the
   /// world.
   [[nodiscard]] std::vector<std::string> connection_points(const HookEnd& of) const;
+  /// Whether a point is pinned.
+  [[nodiscard]] bool is_pinned(PointRef point) const;
   /// Finds where an end is now [m]: a connection point, a point, or the origin of a body's frame. Errors: a
   /// stale id, a name or a point that the object has not, PointRef::kNearest without a name, the world.
   [[nodiscard]] Result<DVec3> find_place(const HookEnd& end) const;
@@ -423,11 +436,10 @@ class World {
   /// out counts negative.
   [[nodiscard]] double volume(SolidId id) const;
 
-  // Queries: they ask where bodies are now; not points of ropes, cloths and particles. Any number of threads
-  // may ask at once while none calls anything else. The first query after bodies moved brings the tree of
-  // boxes up to date, about 0.1 us per awake body. Of equally near parts the one that was created first
-  // counts. A mesh is its surface, met from both sides; meshes with MeshTree::kPlanes and all other shapes
-  // are solid.
+  // Queries: they ask where things are now, first bodies, then deformables. Any number of threads may ask at
+  // once while none calls anything else. The first query after bodies moved brings the tree of boxes up to
+  // date, about 0.1 us per awake body. Of equally near parts the one that was created first counts. A mesh is
+  // its surface, met from both sides; meshes with MeshTree::kPlanes and all other shapes are solid.
   //
   // Errors: places beyond 1e9 m or not finite, motions of no length, stale ids, and any query during a step.
 
@@ -457,6 +469,23 @@ class World {
   /// `point`; of several solids that do, the deepest counts. `reach` is not negative and may be infinite.
   [[nodiscard]] Result<std::optional<ClosestPoint>> find_closest(DVec3 point, Real reach,
                                                                  const QueryFilter& filter = {}) const;
+
+  // These queries look at the box around each deformable, and at all parts of those that may be met.
+
+  /// Finds which deformable the ray from `origin` over `motion` [m] meets first, and where; nothing if it
+  /// meets none. A ray that begins in a rope or a particle meets it at once, with a normal that leads back; a
+  /// solid is its surface. Bodies are not asked.
+  [[nodiscard]] Result<std::optional<DeformableHit>> cast_ray_on_deformables(
+      DVec3 origin, DVec3 motion, const DeformableFilter& filter = {}) const;
+  /// Finds the nearest place of any deformable that is at most `reach` [m] from `point`, or that has `point`
+  /// inside; of several that do, the one in which it is deepest counts. `reach` is not negative and may be
+  /// infinite.
+  [[nodiscard]] Result<std::optional<ClosestDeformable>> find_closest_deformable(
+      DVec3 point, Real reach, const DeformableFilter& filter = {}) const;
+  /// Finds all deformables that come within `radius` [m] of `center`, in order of creation, each with its
+  /// place that is nearest to `center`. `radius` is as `reach` above.
+  [[nodiscard]] Result<std::vector<ClosestDeformable>> find_deformables(
+      DVec3 center, Real radius, const DeformableFilter& filter = {}) const;
 
   // Pushing. Errors: kStaleId for an id or a point that is gone, and values beyond hooke/limits.h. Forces and
   // impulses do nothing to a point that is pinned, or to a body that is not dynamic.

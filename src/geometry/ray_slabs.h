@@ -25,7 +25,8 @@ struct RaySlabs {
   /// within and kNever if the ray misses. A box inside another is never entered before it. The slack makes up
   /// for rounding, so that a hit on the rim of the box is never lost (after Ize, 2013, Robust BVH ray
   /// traversal).
-  [[nodiscard]] double enter(const Box& box, double radius = 0.0) const {
+  template <class T>
+  [[nodiscard]] double enter(const Box3<T>& box, double radius = 0.0) const {
     const double lower[3] = {box.lower.x - radius, box.lower.y - radius, box.lower.z - radius};
     const double upper[3] = {box.upper.x + radius, box.upper.y + radius, box.upper.z + radius};
     const double from[3] = {origin.x, origin.y, origin.z};

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "geometry/closest.h"
+#include "geometry/line_triangle.h"
 #include "geometry/ray_slabs.h"
 
 #include <algorithm>
@@ -60,21 +61,8 @@ void visit_near_to_far(const Bvh& bvh, double limit, const Bound& bound, const V
   }
 }
 
-/// Fraction where the line hits the triangle; infinity if it does not. The three volumes have opposite signs
-/// in the triangles on both sides of an edge, to the last bit: no line slips through.
-double line_hits_triangle(DVec3 origin, DVec3 direction, const std::array<Vec3, 3>& corners) {
-  const DVec3 a = vector_cast<double>(corners[0]) - origin;
-  const DVec3 b = vector_cast<double>(corners[1]) - origin;
-  const DVec3 c = vector_cast<double>(corners[2]) - origin;
-  const double of_a = dot(direction, cross(b, c));
-  const double of_b = dot(direction, cross(c, a));
-  const double of_c = dot(direction, cross(a, b));
-  const bool has_negative = of_a < 0.0 || of_b < 0.0 || of_c < 0.0;
-  const bool has_positive = of_a > 0.0 || of_b > 0.0 || of_c > 0.0;
-  if (has_negative == has_positive) return kNever;
-  const double whole = of_a + of_b + of_c;
-  const DVec3 hit = (of_a / whole) * a + (of_b / whole) * b + (of_c / whole) * c;
-  return dot(hit, direction) / dot(direction, direction);
+std::array<DVec3, 3> in_double(const std::array<Vec3, 3>& corners) {
+  return {vector_cast<double>(corners[0]), vector_cast<double>(corners[1]), vector_cast<double>(corners[2])};
 }
 
 }  // namespace
@@ -147,7 +135,7 @@ std::optional<BvhHit> cast_ray(const Bvh& bvh, DVec3 origin, DVec3 direction, do
   double limit = fraction_max;
   const auto visit = [&](const BvhNode& leaf) {
     for (std::uint32_t k = leaf.next; k < leaf.next + leaf.count; ++k) {
-      const double fraction = line_hits_triangle(origin, direction, bvh.corners[k]);
+      const double fraction = line_hits_triangle(origin, direction, in_double(bvh.corners[k])).fraction;
       if (!std::isfinite(fraction) || fraction < 0.0) continue;
       const bool is_better =
           fraction < limit || (fraction == limit && (!best || bvh.order[k] < best->triangle));

@@ -12,25 +12,9 @@ namespace {
 
 constexpr double kFarRadii = 2.5;  // Distance, in radii of a cluster, from which a dipole stands for it.
 
-using DCorners = std::array<DVec3, 3>;
-
-DCorners corners_of(const Bvh& bvh, std::uint32_t place) {
+std::array<DVec3, 3> corners_of(const Bvh& bvh, std::uint32_t place) {
   const auto& [a, b, c] = bvh.corners[place];
   return {vector_cast<double>(a), vector_cast<double>(b), vector_cast<double>(c)};
-}
-
-/// Half the solid angle under which the point sees the triangle from its inner side (Van Oosterom and
-/// Strackee 1983, The solid angle of a plane triangle).
-double half_solid_angle(const DCorners& t, DVec3 p) {
-  const DVec3 a = t[0] - p;
-  const DVec3 b = t[1] - p;
-  const DVec3 c = t[2] - p;
-  const double la = length(a);
-  const double lb = length(b);
-  const double lc = length(c);
-  const double over = dot(a, cross(b, c));
-  const double under = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return over == 0 && under == 0 ? 0 : math::atan2(over, under);
 }
 
 /// The sums over the triangles below a node, before they are divided.
@@ -60,6 +44,18 @@ double reach_of(const BvhNode& node, DVec3 center) {
 }
 
 }  // namespace
+
+double half_solid_angle(const std::array<DVec3, 3>& corners, DVec3 p) {
+  const DVec3 a = corners[0] - p;
+  const DVec3 b = corners[1] - p;
+  const DVec3 c = corners[2] - p;
+  const double la = length(a);
+  const double lb = length(b);
+  const double lc = length(c);
+  const double over = dot(a, cross(b, c));
+  const double under = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  return over == 0 && under == 0 ? 0 : math::atan2(over, under);
+}
 
 WindingTree build_winding_tree(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   WindingTree tree = {.bvh = build_bvh(positions, triangles)};

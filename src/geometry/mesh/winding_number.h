@@ -13,6 +13,10 @@ struct WindingCluster {
   double radius = 0;       ///< Distance from the center to the farthest corner of the node's box [m].
 };
 
+/// Half the solid angle under which the point sees the triangle from its inner side (Van Oosterom and
+/// Strackee 1983, The solid angle of a plane triangle).
+[[nodiscard]] double half_solid_angle(const std::array<DVec3, 3>& corners, DVec3 p);
+
 /// A tree that tells how often a surface winds about a point, also if the surface is open, crosses itself or
 /// has triangles twice: the generalized winding number (Jacobson, Kavan and Sorkine-Hornung 2013, Robust
 /// inside-outside segmentation), with far triangles taken together (Barill et al. 2018, Fast winding numbers

@@ -20,6 +20,7 @@
 #include "world/undo.h"
 #include "world/world_data.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -65,6 +66,18 @@ PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& s
   constexpr bool kPlaces = std::is_same_v<Line, state::PositionRecord>;
   return {kPlaces ? object.origin : DVec3{}, reinterpret_cast<const std::byte*>(column.data() + first),
           object.particles.count, sizeof(Line), tables.particles.row_of.data() + first};
+}
+
+/// Sum of the masses of an object's points [kg]; 0 for a stale or null id.
+template <class IdType>
+Real mass_of(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id) {
+  const std::uint32_t row = slots.find(id);
+  if (row == slots.kNone) return Real(0);
+  const state::Rows rows = tables.objects[row].particles;
+  double sum = 0;
+  for (std::uint32_t i = rows.first; i < rows.end(); ++i)
+    sum += static_cast<double>(tables.particles.mass[i]);
+  return static_cast<Real>(sum);
 }
 
 /// Returns figure(span, rest length) for each segment of a rope that lies in a twist span, and 0 for others.
@@ -316,6 +329,23 @@ PointView World::velocities(ParticlesId id) const {
   return view_of(reading.tables(), reading.tables().particles_slots, id, reading.tables().particles.velocity);
 }
 
+Real World::mass(RopeId id) const {
+  const world::Reading reading(data_);
+  return mass_of(reading.tables(), reading.tables().rope_slots, id);
+}
+Real World::mass(ClothId id) const {
+  const world::Reading reading(data_);
+  return mass_of(reading.tables(), reading.tables().cloth_slots, id);
+}
+Real World::mass(SolidId id) const {
+  const world::Reading reading(data_);
+  return mass_of(reading.tables(), reading.tables().solid_slots, id);
+}
+Real World::mass(ParticlesId id) const {
+  const world::Reading reading(data_);
+  return mass_of(reading.tables(), reading.tables().particles_slots, id);
+}
+
 std::vector<Real> World::tensions(RopeId id) const {
   const world::Reading reading(data_);
   const std::uint32_t row = reading.tables().rope_slots.find(id);
@@ -480,6 +510,13 @@ Result<void> World::unpin(PointRef point) {
   world::unpin_particle(claim.tables(), *row);
   world::wake_near_points(claim.tables().objects[row->object], claim.tables());
   return {};
+}
+
+bool World::is_pinned(PointRef point) const {
+  const world::Reading reading(data_);
+  const auto row = world::find_particle(reading.tables(), point);
+  return row && std::any_of(reading.tables().pins.begin(), reading.tables().pins.end(),
+                            [&](const state::Pin& pin) { return pin.particle == row->particle; });
 }
 
 Result<void> World::set_gravity(Vec3 gravity) {

@@ -5,6 +5,7 @@
 #include "build/build.h"
 #include "build/checks.h"
 #include "collision/continuous/shape_bounds.h"
+#include "collision/query/deformable_queries.h"
 #include "collision/query/queries.h"
 #include "state/body_frames.h"
 #include "world/body_stages.h"
@@ -41,12 +42,16 @@ Result<void> check_place(const char* name, DVec3 place) {
   return build::Checks("query").place(name, place).result();
 }
 
-Result<QueryScene> look_along(const std::shared_ptr<WorldData>& data, DVec3 origin, DVec3 motion,
-                              const QueryFilter& filter) {
+Result<void> check_ray(DVec3 origin, DVec3 motion) {
   build::Checks checks("query");
   checks.place("origin", origin).place("motion", motion);
   checks.require(length(motion) > 0, "motion", "must have a length");
-  if (!checks.good()) return checks.result().error();
+  return checks.result();
+}
+
+Result<QueryScene> look_along(const std::shared_ptr<WorldData>& data, DVec3 origin, DVec3 motion,
+                              const QueryFilter& filter) {
+  if (const auto good = check_ray(origin, motion); !good) return good.error();
   return look(data, filter);
 }
 
@@ -95,6 +100,56 @@ std::vector<BodyPart> parts_of(const Tables& t, const std::vector<std::uint32_t>
   parts.reserve(colliders.size());
   for (const std::uint32_t collider : colliders) parts.push_back(world::part_of(t, collider));
   return parts;
+}
+
+/// Whether a query may look at deformables with this filter now.
+Result<void> check_look(const std::shared_ptr<WorldData>& data, const DeformableFilter& filter) {
+  if (!data) return world::Claim(data).error();
+  if (data->stepping) return Error{ErrorCode::kUnsupported, "query", "cannot be asked during a step"};
+  const bool is_known = state::object_row(data->tables, filter.skip) != Tables::kNoRow;
+  if (filter.skip.kind != PointRef::Kind::kNone && !is_known) return world::stale("filter.skip");
+  const auto margin = static_cast<double>(filter.margin);
+  return build::Checks("query").up_to("filter.margin", margin, limits::kSize).result();
+}
+
+/// The id of an object, as that of its point `index`.
+PointRef point_of(const Tables& t, const state::Deformable& object, std::uint32_t index) {
+  switch (object.kind) {
+    case PointRef::Kind::kRope:
+      return point(t.rope_slots.id_of(object.slot), index);
+    case PointRef::Kind::kCloth:
+      return point(t.cloth_slots.id_of(object.slot), index);
+    case PointRef::Kind::kSolid:
+      return point(t.solid_slots.id_of(object.slot), index);
+    case PointRef::Kind::kParticles:
+      return point(t.particles_slots.id_of(object.slot), index);
+    case PointRef::Kind::kNone:
+      break;
+  }
+  return {};
+}
+
+DeformablePlace place_of(const Tables& t, const collision::DeformableSpot& spot) {
+  const auto& [a, b, c] = spot.weights;
+  return {.nearest = point_of(t, t.objects[spot.object], collision::point_with_most_weight(t, spot)),
+          .element = spot.element,
+          .corners = spot.corners,
+          .weights = {static_cast<Real>(a), static_cast<Real>(b), static_cast<Real>(c)},
+          .point = spot.point,
+          .normal = vector_cast<Real>(spot.normal)};
+}
+
+ClosestDeformable closest_of(const Tables& t, const collision::DeformableSpot& spot) {
+  return {.place = place_of(t, spot), .distance = static_cast<Real>(spot.distance)};
+}
+
+/// Checks a place and a distance that a query may look from it.
+Result<void> check_reach(const char* name, DVec3 place, const char* reach_name, Real reach) {
+  build::Checks checks("query");
+  checks.place(name, place)
+      .require(reach >= Real(0), reach_name, static_cast<double>(reach),
+               "must be zero, positive or infinite");
+  return checks.result();
 }
 
 }  // namespace
@@ -174,10 +229,7 @@ Result<std::vector<BodyPart>> World::find_in_box(DVec3 lower, DVec3 upper, const
 Result<std::optional<ClosestPoint>> World::find_closest(DVec3 point, Real reach,
                                                         const QueryFilter& filter) const {
   const world::Reading reading(data_);
-  build::Checks checks("query");
-  checks.place("point", point)
-      .require(reach >= Real(0), "reach", static_cast<double>(reach), "must be zero, positive or infinite");
-  if (!checks.good()) return checks.result().error();
+  if (const auto good = check_reach("point", point, "reach", reach); !good) return good.error();
   const Result<QueryScene> scene = look(data_, filter);
   if (!scene) return scene.error();
   const auto hit = collision::find_closest(scene.value(), point, reach);
@@ -189,6 +241,41 @@ Result<std::optional<ClosestPoint>> World::find_closest(DVec3 point, Real reach,
                                     .point = hit->point,
                                     .normal = hit->normal,
                                     .distance = hit->distance});
+}
+
+Result<std::optional<DeformableHit>> World::cast_ray_on_deformables(DVec3 origin, DVec3 motion,
+                                                                    const DeformableFilter& filter) const {
+  const world::Reading reading(data_);
+  if (const auto good = check_ray(origin, motion); !good) return good.error();
+  if (const auto good = check_look(data_, filter); !good) return good.error();
+  const auto spot = collision::cast_ray(reading.tables(), filter, origin, motion);
+  if (!spot) return std::optional<DeformableHit>();
+  return std::optional(DeformableHit{.place = place_of(reading.tables(), *spot),
+                                     .fraction = spot->distance,
+                                     .distance = spot->distance * length(motion)});
+}
+
+Result<std::optional<ClosestDeformable>> World::find_closest_deformable(
+    DVec3 point, Real reach, const DeformableFilter& filter) const {
+  const world::Reading reading(data_);
+  if (const auto good = check_reach("point", point, "reach", reach); !good) return good.error();
+  if (const auto good = check_look(data_, filter); !good) return good.error();
+  const auto spot = collision::find_closest(reading.tables(), filter, point, static_cast<double>(reach));
+  if (!spot) return std::optional<ClosestDeformable>();
+  return std::optional(closest_of(reading.tables(), *spot));
+}
+
+Result<std::vector<ClosestDeformable>> World::find_deformables(DVec3 center, Real radius,
+                                                               const DeformableFilter& filter) const {
+  const world::Reading reading(data_);
+  if (const auto good = check_reach("center", center, "radius", radius); !good) return good.error();
+  if (const auto good = check_look(data_, filter); !good) return good.error();
+  std::vector<collision::DeformableSpot> spots;
+  collision::find_near(reading.tables(), filter, center, static_cast<double>(radius), spots);
+  std::vector<ClosestDeformable> found;
+  found.reserve(spots.size());
+  for (const auto& spot : spots) found.push_back(closest_of(reading.tables(), spot));
+  return found;
 }
 
 }  // namespace hooke
