@@ -1,4 +1,5 @@
-/// Chapter 8 of the manual: rays, swept shapes, overlaps, forces of contacts, hits, a sensor and sleep.
+/// Chapter 8 of the manual: rays, swept shapes, overlaps, a hand, forces of contacts, hits, a sensor and
+/// sleep.
 
 #include "hooke/hooke.h"
 
@@ -53,6 +54,31 @@ bool where_things_are(const Scene& scene) {
          good;
 }
 
+/// A ray to a rope on a hook, and a hand that pulls it away and lets it go.
+bool grabs_a_rope() {
+  hooke::World world = hooke::World::create().value();
+  const hooke::RopeId rope =
+      world.add_rope({.hook_point = {5, 3, 0}, .direction = {0, -1, 0}, .length_at_rest = 2}).value();
+  const auto touched = world.cast_ray_on_deformables({5, 2, 5}, {0, 0, -10});
+  if (!touched || !touched.value()) return false;
+  const hooke::DeformablePlace place = touched.value()->place;
+  std::printf("the ray meets segment %u near point %u\n", place.element, place.nearest.index);
+
+  hooke::Hand hand;
+  const auto grabbed = hand.grab_along(world, {5, 2, 5}, {0, 0, -10});
+  if (!grabbed || !grabbed.value()) return false;
+  hand.move_to({6, 4, 0});
+  for (int i = 0; i < 60; ++i) {
+    const auto held = hand.before_step(world, 1.0f / 60);
+    if (!held || !held.value()) return false;
+    world.step(1.0f / 60);
+  }
+  // The rope is 1 m long from its hook to the hand, which wants to be farther away.
+  const bool good =
+      agrees("from the hook to the hand [m]", length(hand.place(world) - hooke::DVec3{5, 3, 0}), 1, 0.01);
+  return hand.release(world) && world.mass(rope) > 0 && good;
+}
+
 /// The ball falls by 5 m through the gate onto the ground, and falls asleep there.
 bool what_happens(Scene& scene) {
   hooke::World& world = scene.world;
@@ -89,5 +115,5 @@ bool what_it_weighs(Scene& scene) {
 
 int main() {
   Scene scene;
-  return where_things_are(scene) && what_happens(scene) && what_it_weighs(scene) ? 0 : 1;
+  return where_things_are(scene) && grabs_a_rope() && what_happens(scene) && what_it_weighs(scene) ? 0 : 1;
 }

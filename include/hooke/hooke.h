@@ -5,6 +5,7 @@
 #include "hooke/desc.h"
 #include "hooke/event.h"
 #include "hooke/geometry.h"
+#include "hooke/hand.h"
 #include "hooke/id.h"
 #include "hooke/limits.h"
 #include "hooke/machine.h"
