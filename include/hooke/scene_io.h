@@ -491,6 +491,27 @@ struct LoadOptions {
   std::function<void(std::string_view what, double part)> progress = {};
 };
 
+struct SimulationState;  // what a SimulationSnapshot holds
+
+/// A state of a Simulation: its world, its objects, and how far its timeline and its expectations are. Copies
+/// share their content.
+class SimulationSnapshot {
+ public:
+  /// Makes an empty snapshot, which cannot be restored.
+  SimulationSnapshot() = default;
+
+  /// Memory that the content takes [bytes], as Snapshot::bytes; 0 for an empty one. What it shares with the
+  /// snapshot before does not count.
+  [[nodiscard]] std::size_t bytes() const;
+  /// Number of steps that the world had made; 0 for an empty one.
+  [[nodiscard]] std::uint64_t step_count() const;
+
+ private:
+  friend class Simulation;
+  explicit SimulationSnapshot(std::shared_ptr<const SimulationState> state) : state_(std::move(state)) {}
+  std::shared_ptr<const SimulationState> state_;
+};
+
 /// A World made from a scene, with its timeline and its expectations.
 class Simulation {
  public:
@@ -514,9 +535,26 @@ class Simulation {
   /// Steps until Scene::seconds are over, or until a step did not move. Returns the report of the last step.
   StepReport run();
 
+  /// Adds objects to those of the scene, now, as an event of the timeline does. They may use the scene's
+  /// materials and meshes, and hooks may hold any objects by their names. Returns what is wrong with those
+  /// that were left out; the others are in the world. Errors: a name that an object has already, and those of
+  /// create().
+  std::vector<Error> add(const SceneObjects& objects);
+  /// What add() was called with, in order. SceneObject::path of such an object begins with "added[i].".
+  [[nodiscard]] std::span<const std::shared_ptr<const SceneObjects>> added() const;
+  /// Removes the object of this name, or all copies of an array, with the hooks that hold it. Errors: there
+  /// is none.
+  Result<void> remove(const std::string& name);
+
+  /// Copies the present state.
+  [[nodiscard]] SimulationSnapshot snapshot() const;
+  /// Puts everything back as it was. Ids of objects that came since then are stale. Errors: an empty
+  /// snapshot.
+  Result<void> restore(const SimulationSnapshot& snapshot);
+
   ///@{
-  /// The world, which lives as long as the Simulation. Step it by step() only, and remove objects by events:
-  /// otherwise events, expectations and objects() are wrong.
+  /// The world, which lives as long as the Simulation. Step it by step() only, and remove objects by
+  /// remove(): otherwise events, expectations and objects() are wrong.
   [[nodiscard]] World& world();
   [[nodiscard]] const World& world() const;
   ///@}

@@ -161,7 +161,7 @@ void prepare_solid(const Simulation& simulation, const SceneObject& object, Figu
 
 void prepare_points(const Simulation& simulation, const SceneObject& object, Figure& figure) {
   std::size_t row = 0;
-  const SceneObjects& objects = objects_of(simulation.scene(), object.path, row);
+  const SceneObjects& objects = objects_of(simulation, object.path, row);
   if (object.kind == SceneObject::Kind::kRope && row < objects.ropes.size()) {
     add_loads(objects.ropes[row].loads, simulation.world().positions(object.rope).size(), figure);
   }

@@ -20,15 +20,6 @@ namespace {
 /// The list's origin moves in steps, so that shadows and cached buffers stand still while the camera does
 /// not.
 constexpr double kOriginStep = 64;
-constexpr double kFar = 1e30;  ///< A length beyond everything [m].
-
-/// Fields are not drawn, and of hooks only distances are, because others lie within what they hold.
-bool is_drawn(const SceneObject& object) {
-  if (object.kind == SceneObject::Kind::kHook) {
-    return object.hook_kind == HookKind::kDistance && !object.broken;
-  }
-  return object.kind != SceneObject::Kind::kField;
-}
 
 DVec3 origin_near(DVec3 place) {
   const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };
@@ -37,91 +28,26 @@ DVec3 origin_near(DVec3 place) {
 
 }  // namespace
 
-std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::string& path,
-                                                                const ImageBytes& bytes) {
-  const auto [entry, is_new] = textures_.try_emplace({path, bytes});
-  if (!is_new) return entry->second;
-  auto image = bytes ? render::decode_image(*bytes, path) : render::load_image(path);
-  if (image) {
-    entry->second = std::make_shared<render::Image>(std::move(image).value());
-  } else {
-    warnings_.push_back(to_line(image.error()));
-  }
-  return entry->second;
-}
-
-std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, const SceneObject& object) {
-  std::shared_ptr<Figure>& figure = figures_[key_of(object)];
-  if (figure == nullptr) {
-    figure = std::make_shared<Figure>(make_figure(
-        simulation, object,
-        [this](const std::string& path, const ImageBytes& bytes) { return find_texture(path, bytes); },
-        geometries_));
-  }
-  return figure;
-}
-
 void SceneDrawing::record(const Simulation& simulation, double time) {
-  std::swap(previous_, current_);
-  current_.time = time;
-  current_.objects.clear();
-  for (const SceneObject& object : simulation.objects()) {
-    if (!is_drawn(object)) continue;
-    ObjectState& state = current_.objects.emplace_back();
-    state.figure = find_figure(simulation, object);
-    if (object.kind == SceneObject::Kind::kBody) state.pose = simulation.world().pose(object.body);
-    if (object.kind == SceneObject::Kind::kHook) {
-      const std::array<DVec3, 2> anchors = simulation.world().hook_anchors(object.hook);
-      state.points.assign(anchors.begin(), anchors.end());
-      continue;
-    }
-    if (object.kind == SceneObject::Kind::kSolid) {
-      state.points = simulation.world().surface(object.solid);
-      continue;
-    }
-    const PointView points = positions_of(simulation.world(), object);
-    state.points.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
-  }
-  // A step's time is a sum, so that half a step early still counts as in time.
-  const double half_step = static_cast<double>(simulation.scene().dt) / 2;
-  const bool due = trail_.empty() || time >= trail_.back().time + trail_interval_.value_or(0) - half_step;
-  if (trail_interval_ && due) trail_.push_back(current_);
-  camera_ = simulation.scene().camera;
-  if (!camera_ && !automatic_) measure(current_);
+  const double interval = static_cast<double>(simulation.scene().dt);
+  record(capture_.capture(simulation, time), interval);
 }
 
-void SceneDrawing::measure(const State& state) {
-  DVec3 low = {kFar, kFar, kFar};
-  DVec3 high = {-kFar, -kFar, -kFar};
-  const auto extend = [&](DVec3 p) {
-    if (!is_finite(p)) return;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  };
-  for (const ObjectState& object : state.objects) {
-    for (const DVec3& point : object.points) extend(point);
-    if (object.figure->half_space) continue;
-    for (const FigureSolid& solid : object.figure->solids) {
-      if (solid.geometry.levels.back() == nullptr) continue;
-      const Mat4 transform = transform_of(solid);
-      for (const render::Vertex& vertex : solid.geometry.levels.back()->vertices) {
-        extend(
-            object.pose.position +
-            vector_cast<double>(rotate(object.pose.rotation, transform_point(transform, vertex.position))));
-      }
-    }
-  }
-  automatic_ = low.x <= high.x ? viewpoint_of_box(low, high) : Viewpoint{};
+void SceneDrawing::record(SceneState state, double step) {
+  std::swap(previous_, current_);
+  current_ = std::move(state);
+  // A step's time is a sum, so that half a step early still counts as in time.
+  const double due_time =
+      trail_.empty() ? current_.time : trail_.back().time + trail_interval_.value_or(0) - step / 2;
+  if (trail_interval_ && current_.time >= due_time) trail_.push_back(current_);
 }
 
 Viewpoint SceneDrawing::viewpoint(double time) const {
-  if (camera_) return viewpoint_at(*camera_, time);
-  return automatic_.value_or(Viewpoint{});
+  return current_.camera ? viewpoint_at(*current_.camera, time) : current_.automatic;
 }
 
-SceneDrawing::State SceneDrawing::between(double time) const {
-  State state = current_;
+SceneState SceneDrawing::between(double time) const {
+  SceneState state = current_;
   const double span = current_.time - previous_.time;
   if (!(span > 0) || time >= current_.time) return state;
   const double part = std::max(0.0, (time - previous_.time) / span);
@@ -143,6 +69,7 @@ SceneDrawing::State SceneDrawing::between(double time) const {
 void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   const Viewpoint view = viewpoint(time);
   const DVec3 origin = origin_near(view.target);
+  origin_ = origin;
   const auto local = [&](DVec3 p) { return vector_cast<float>(p - origin); };
   list.ground.reset();
   list.camera = {local(view.eye), local(view.target), {0, 1, 0}, view.vertical_fov_deg};
@@ -150,7 +77,7 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   const float pixel = 2 * std::tan(half_fov) / static_cast<float>(std::max(height_px, 1));
   const FigurePlace place = {.pixel = pixel, .eye = list.camera.eye};
   add_trail(origin, place, list);
-  const State state = between(time);
+  const SceneState state = between(time);
   std::vector<Vec3> points;
   std::size_t bounded = 0;
   for (const ObjectState& object : state.objects) {
@@ -185,7 +112,7 @@ void SceneDrawing::add_bounds(const Figure& figure, const FigurePlace& place, st
 void SceneDrawing::add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const {
   FigurePlace left = place;
   std::vector<Vec3> points;
-  for (const State& state : trail_) {
+  for (const SceneState& state : trail_) {
     for (const ObjectState& object : state.objects) {
       const auto kind = object.figure->kind;
       if (kind != SceneObject::Kind::kRope && kind != SceneObject::Kind::kParticles) continue;
@@ -198,7 +125,10 @@ void SceneDrawing::add_trail(const DVec3& origin, const FigurePlace& place, rend
 }
 
 std::vector<std::string> SceneDrawing::take_warnings() {
-  return std::exchange(warnings_, {});
+  std::vector<std::string> warnings = capture_.take_warnings();
+  warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
+  warnings_.clear();
+  return warnings;
 }
 
 }  // namespace hooke::app

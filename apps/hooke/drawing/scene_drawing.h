@@ -1,7 +1,6 @@
 #pragma once
 
-#include "hooke/drawing/figure.h"
-#include "hooke/drawing/scene_camera.h"
+#include "hooke/drawing/scene_capture.h"
 #include "hooke/geometry.h"
 #include "hooke/scene_io.h"
 
@@ -36,6 +35,8 @@ class SceneDrawing {
   void record(const Simulation& simulation) { record(simulation, simulation.world().time()); }
   /// Copies the state with a time [s] of its own, for worlds whose points were moved by hand.
   void record(const Simulation& simulation, double time);
+  /// Takes a state that was captured elsewhere; `step` is the length of a step [s].
+  void record(SceneState state, double step);
 
   /// Makes ropes and particles leave a copy of themselves behind every `interval` [s] from now on, as in a
   /// multiple exposure. `interval` is positive.
@@ -46,43 +47,29 @@ class SceneDrawing {
   /// picture's; no rope gets thinner than about two pixels.
   void fill(double time, int height_px, render::DrawList& list);
 
+  /// The point of the world that was the origin of the last list [m].
+  [[nodiscard]] DVec3 origin() const { return origin_; }
+
   /// Returns one line for each texture that could not be read, and for what could not be painted. The call
   /// clears them.
   [[nodiscard]] std::vector<std::string> take_warnings();
 
  private:
-  struct ObjectState {
-    std::shared_ptr<Figure> figure;
-    std::vector<DVec3> points;  ///< Set for a deformable object.
-    Pose pose;                  ///< Set for a body.
-  };
-  struct State {
-    double time = 0;
-    std::vector<ObjectState> objects;
-  };
-
-  std::shared_ptr<Figure> find_figure(const Simulation& simulation, const SceneObject& object);
-  std::shared_ptr<const render::Image> find_texture(const std::string& path, const ImageBytes& bytes);
   [[nodiscard]] Viewpoint viewpoint(double time) const;
-  [[nodiscard]] State between(double time) const;
-  void measure(const State& state);
+  [[nodiscard]] SceneState between(double time) const;
 
   void add_bounds(const Figure& figure, const FigurePlace& place, std::size_t number,
                   render::DrawList& list) const;
   void add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const;
 
-  BodyGeometries geometries_;
-  std::map<ObjectKey, std::shared_ptr<Figure>> figures_;
-  /// By path, or by the bytes of an image that a model holds.
-  std::map<std::pair<std::string, ImageBytes>, std::shared_ptr<const render::Image>> textures_;
+  SceneCapture capture_;
   std::vector<std::string> warnings_;
-  std::optional<SceneCamera> camera_;
-  std::optional<Viewpoint> automatic_;  ///< View of the first state, for scenes without a camera.
-  State previous_;
-  State current_;
+  SceneState previous_;
+  SceneState current_;
+  DVec3 origin_ = {};
   DrawingStyle style_;
   std::optional<double> trail_interval_;  ///< [s]
-  std::vector<State> trail_;              ///< Oldest first.
+  std::vector<SceneState> trail_;         ///< Oldest first.
 };
 
 }  // namespace hooke::app

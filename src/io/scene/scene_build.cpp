@@ -209,6 +209,7 @@ bool Builder::keep(SceneObject& object, IdType SceneObject::*member, const Resul
   object.*member = added.value();
   data_.row_of[object.name] = data_.objects.size();
   data_.objects.push_back(std::move(object));
+  data_.saved_objects = nullptr;
   return true;
 }
 
@@ -602,6 +603,7 @@ void build_objects(const SceneObjects& objects, const std::string& prefix, Simul
 }
 
 void index_objects(SimulationData& data) {
+  data.saved_objects = nullptr;
   data.row_of.clear();
   for (std::size_t i = 0; i < data.objects.size(); ++i) data.row_of[data.objects[i].name] = i;
 }

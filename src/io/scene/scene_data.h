@@ -47,6 +47,25 @@ struct SimulationData {
   std::vector<Error> errors = {};
   std::vector<Error> warnings = {};  ///< What was made of meshes unasked.
   std::vector<Error> notes = {};     ///< What was made of meshes as the scene asks.
+  std::vector<std::shared_ptr<const SceneObjects>> added = {};  ///< What came by Simulation::add.
+  /// Copy of `objects` that snapshots share; null after a change of them.
+  mutable std::shared_ptr<const std::vector<SceneObject>> saved_objects = {};
+};
+
+/// SimulationState is what a snapshot of a simulation holds.
+struct SimulationState {
+  Snapshot world;
+  std::uint64_t step_count = 0;
+  std::shared_ptr<const std::vector<SceneObject>> objects = {};
+  /// Ids of meshes that were added to the world after the snapshot are stale in it.
+  std::unordered_map<std::string, SceneModel> models = {};
+  std::vector<std::shared_ptr<const SceneObjects>> added = {};
+  std::size_t points = 0;
+  std::size_t next_event = 0;
+  std::vector<ActiveForce> forces = {};
+  std::uint32_t contacts = 0;
+  std::vector<SceneVerdict> verdicts = {};
+  std::vector<Error> errors = {};
 };
 
 namespace io {
@@ -72,8 +91,11 @@ void build_meshes(SimulationData& data, std::vector<Error>& errors);
 void build_objects(const SceneObjects& objects, const std::string& prefix, SimulationData& data,
                    std::vector<Error>& errors);
 
-/// Fills `row_of` from `objects`.
+/// Fills `row_of` from `objects`, which have changed.
 void index_objects(SimulationData& data);
+
+/// Removes the object of this name, or all copies of an array.
+[[nodiscard]] Result<void> remove_objects(SimulationData& data, const std::string& name);
 
 /// Returns the handle of a point; it is of kind kNone for an object without points.
 [[nodiscard]] PointRef point_of(const World& world, const SceneObject& object, ScenePoint point);

@@ -25,45 +25,6 @@ void record(SimulationData& data, std::size_t event, const Result<void>& done) {
   data.errors.push_back(io::scene_error(data.scene, io::indexed("timeline", event), done.error()));
 }
 
-/// Removes the object of this name, or all copies of an array.
-Result<void> remove_objects(SimulationData& data, const std::string& name) {
-  const auto named = [&](const SceneObject& object) {
-    if (!object.name.starts_with(name)) return false;
-    const std::optional<io::CopyName> copy = io::take_copy_name(object.name);
-    return object.name == name || (copy && copy->array == name);
-  };
-  std::vector<std::string> names = {};
-  std::vector<BodyId> bodies = {};
-  for (const SceneObject& object : data.objects) {
-    if (!named(object)) continue;
-    names.push_back(object.name);
-    // Ids of other kinds are null, and their removal does nothing.
-    bodies.push_back(object.body);
-    data.world.remove(object.rope);
-    data.world.remove(object.cloth);
-    data.world.remove(object.solid);
-    data.world.remove(object.particles);
-    data.world.remove(object.field);
-    data.world.remove(object.hook);
-  }
-  data.world.remove(bodies);
-  std::sort(names.begin(), names.end());
-  const auto gone = [&](const std::string& held) {
-    return std::binary_search(names.begin(), names.end(), held);
-  };
-  const std::size_t removed = std::erase_if(data.objects, [&](const SceneObject& object) {
-    // The hooks of an object are removed with it.
-    return named(object) || gone(object.hooked[0]) || gone(object.hooked[1]);
-  });
-  if (removed == 0) {
-    return Error{ErrorCode::kStaleId, "", "there is no object " + io::in_quotes(name) + " any more"};
-  }
-  io::index_objects(data);
-  std::erase_if(data.forces,
-                [&](const ActiveForce& force) { return data.timeline[force.event].object == name; });
-  return {};
-}
-
 Result<void> act_on_body(World& world, BodyId body, const SceneEvent& event) {
   using EventKind = SceneEvent::Kind;
   switch (event.kind) {
@@ -128,7 +89,7 @@ Result<void> apply_event(SimulationData& data, std::size_t index) {
       io::build_objects(event.add, io::indexed("timeline", index) + ".add.", data, data.errors);
       return {};
     case SceneEvent::Kind::kRemove:
-      return remove_objects(data, event.object);
+      return io::remove_objects(data, event.object);
     case SceneEvent::Kind::kForce:
       data.forces.push_back({.event = index, .steps_left = event.steps});
       return {};
@@ -221,6 +182,7 @@ void note_broken_hooks(SimulationData& data) {
     const auto event = std::find_if(breaks.begin(), breaks.end(),
                                     [&](const BreakEvent& one) { return one.hook == object.hook; });
     if (event == breaks.end()) continue;
+    data.saved_objects = nullptr;
     object.broken = true;
     object.broke = *event;
   }

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "hooke/hand.h"
+#include "hooke/scene_io.h"
+#include "hooke/session/action.h"
+#include "hooke/session/timeline.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace hooke::app {
+
+/// A simulation that can be played, touched, rewound and undone, on one thread. Session runs it on a thread
+/// of its own.
+///
+/// After a rewind, steps repeat what happened, with all actions, up to the last step that was made. The first
+/// new action forgets what came after it.
+class Player {
+ public:
+  /// `budget` is the memory for the timeline [bytes].
+  Player(Simulation simulation, std::size_t budget);
+
+  /// Does an action now. What failed changes nothing.
+  Outcome act(const Action& action);
+  /// Makes one step. The Error says that the world did not move.
+  Result<void> step();
+  /// Goes to a step that was made; a later one counts as the last one.
+  void seek(std::uint64_t step);
+  /// Goes back to before the last action that was not undone: a whole grip from grab to release counts as
+  /// one.
+  Outcome undo();
+  /// Goes back to the start, and forgets everything.
+  void restart();
+
+  [[nodiscard]] const Simulation& simulation() const { return simulation_; }
+  [[nodiscard]] const Timeline& timeline() const { return timeline_; }
+  [[nodiscard]] const Hand& hand() const { return hand_; }
+  [[nodiscard]] std::uint64_t step_count() const { return simulation_.world().step_count(); }
+  /// The last step that was made.
+  [[nodiscard]] std::uint64_t last_step() const { return last_step_; }
+  /// Number of actions that undo can take back.
+  [[nodiscard]] std::size_t undo_count() const { return timeline_.undo_count(next_action_); }
+  /// Name of the object that the hand holds; empty for none.
+  [[nodiscard]] std::string held() const;
+  /// Report of the last step.
+  [[nodiscard]] const StepReport& report() const { return report_; }
+
+ private:
+  /// What a ray meets.
+  struct Target {
+    BodyId body = {};
+    PointRef point = {};
+    DVec3 place = {};
+    std::string name = {};
+  };
+
+  [[nodiscard]] Moment moment(std::string_view before) const;
+  void go_to(const Moment& moment);
+  void repeat_actions();
+  Outcome perform(const Action& action);
+  Outcome perform(const Grab& grab);
+  Outcome perform(const MoveHand& move);
+  Outcome perform(const Release& release);
+  Outcome perform(const Shoot& shoot);
+  Outcome perform(const Drop& drop);
+  Outcome perform(const Pin& pin);
+  Outcome perform(const Tie& tie);
+  Outcome perform(const Remove& remove);
+  Outcome pin_body(const Target& target);
+  Outcome add(const SceneObjects& objects, const std::string& text);
+  [[nodiscard]] std::optional<Target> find(const Ray& ray) const;
+  [[nodiscard]] std::string name_of(BodyId body, PointRef point) const;
+  [[nodiscard]] std::string new_name(std::string_view kind);
+
+  Simulation simulation_;
+  Hand hand_;
+  Timeline timeline_;
+  std::size_t next_action_ = 0;  ///< Number of actions of the log that were done.
+  std::uint64_t last_step_ = 0;
+  std::uint64_t added_ = 0;
+  StepReport report_;
+};
+
+}  // namespace hooke::app

@@ -1,0 +1,158 @@
+#pragma once
+
+#include "hooke/drawing/scene_capture.h"
+#include "hooke/scene_io.h"
+#include "hooke/session/action.h"
+#include "hooke/session/player.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+namespace hooke::app {
+
+/// Plays or pauses.
+struct Play {
+  bool playing = true;
+};
+/// Pauses and makes steps.
+struct MakeSteps {
+  int count = 1;
+};
+/// Changes how fast time passes; 1 is real time.
+struct SetSpeed {
+  double speed = 1;
+};
+/// Pauses and goes to a step of the timeline.
+struct Seek {
+  std::uint64_t step = 0;
+};
+/// Goes back to before the last action.
+struct Undo {};
+/// Goes back to the start, and forgets what was done.
+struct Restart {};
+
+using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Restart, Action>;
+
+/// [J]
+struct Energies {
+  double kinetic = 0;
+  double potential = 0;  ///< Potential energy of gravity.
+  double elastic = 0;
+};
+
+/// What others see of a session at one moment. It does not change any more.
+struct SessionView {
+  /// How far the session is.
+  enum class Stage : std::uint8_t {
+    kLoading,  ///< It reads models and builds the world.
+    kReady,    ///< It can be played.
+    kFailed,   ///< The scene could not be built; `errors` say why.
+  };
+
+  Stage stage = Stage::kLoading;
+  std::string progress = {};         ///< What is done while it loads.
+  std::vector<Error> errors = {};    ///< Why it failed.
+  std::uint64_t commands = 0;        ///< Number of commands that were done: see Session::post.
+  std::optional<Outcome> said = {};  ///< What came of the last action or undo.
+  std::uint64_t said_by = 0;         ///< Number of the command that `said` is about.
+  std::uint64_t last_grab = 0;       ///< Number of the last command that was a grab.
+  bool last_grab_done = false;       ///< Whether it grabbed something.
+  bool playing = false;
+  double speed = 1;
+  std::uint64_t step = 0;
+  std::uint64_t last_step = 0;  ///< End of the timeline; beyond `step` after a rewind.
+  double time = 0;              ///< [s]
+  double step_seconds = 0;      ///< Length of a step [s].
+  double step_ms = 0;           ///< Time that the last steps took, smoothed.
+  Energies energies = {};
+  bool holding = false;        ///< Whether the hand holds something.
+  std::string held = {};       ///< Name of what it holds.
+  DVec3 hand_place = {};       ///< The place that is held [m].
+  DVec3 hand_target = {};      ///< Where the hand wants it [m].
+  std::size_t undo_count = 0;  ///< Number of actions that undo can take back.
+  std::size_t moments = 0;     ///< States that the timeline holds.
+  std::size_t timeline_bytes = 0;
+  std::size_t timeline_budget = 0;                 ///< [bytes]
+  std::uint64_t timeline_interval = 0;             ///< Steps between states.
+  std::string problem = {};                        ///< Why it does not play on; empty for no problem.
+  std::vector<std::string> warnings = {};          ///< Textures that could not be read; all so far.
+  std::vector<std::string> droppable = {};         ///< Names that Drop takes.
+  std::shared_ptr<const SceneState> picture = {};  ///< What to draw.
+  /// Name and a place [m] of each object that is drawn: a body's origin, a middle or last point of others.
+  std::vector<std::pair<std::string, DVec3>> places = {};
+  /// When the view was made.
+  std::chrono::steady_clock::time_point made = {};
+};
+
+/// How a session runs.
+struct SessionOptions {
+  bool playing = true;
+  std::size_t timeline_budget = std::size_t{512} << 20;  ///< Memory for the timeline [bytes].
+  std::optional<double> stop_time = {};                  ///< Pauses for good at this time [s].
+};
+
+/// Makes the simulation, on the session's thread, and calls `progress` with what is done.
+using Loader = std::function<Loaded<Simulation>(const std::function<void(const std::string&)>& progress)>;
+
+/// Runs a simulation on a thread of its own, which loads it, steps it in real time and does what it is told.
+/// All calls return at once, whatever the thread is busy with.
+class Session {
+ public:
+  Session(Loader loader, const SessionOptions& options);
+  /// Waits for the step that runs.
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Hands over a command. Returns its number: it was done when SessionView::commands is at least that.
+  std::uint64_t post(Command command);
+  /// The latest view; never null.
+  [[nodiscard]] std::shared_ptr<const SessionView> view() const;
+  /// Waits until a view fulfills a condition, at most `seconds`, and returns the view then; for tests.
+  std::shared_ptr<const SessionView> wait_for(const std::function<bool(const SessionView&)>& condition,
+                                              double seconds) const;
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+
+  void run();
+  bool load();
+  void play();
+  /// Waits for commands, or for the time of the next step. Returns the commands.
+  std::vector<Command> wait();
+  void obey(const Command& command);
+  void obey(const Action& action);
+  void step();
+  void step_if_due();
+  void publish();
+  void publish(SessionView view);
+
+  Loader loader_;
+  SessionOptions options_;
+  std::unique_ptr<Player> player_;
+  SceneCapture capture_;
+  SessionView state_;          ///< The next view, but for what follows from the player.
+  WallClock::time_point due_;  ///< When the next step is due.
+
+  mutable std::mutex mutex_;  ///< Guards what follows.
+  mutable std::condition_variable changed_;
+  std::deque<Command> queue_;
+  std::uint64_t posted_ = 0;
+  bool ends_ = false;
+  std::shared_ptr<const SessionView> view_;
+
+  std::thread thread_;  ///< Comes last: it uses all of the above.
+};
+
+}  // namespace hooke::app

@@ -1,0 +1,324 @@
+#include "hooke/session/session.h"
+
+#include <chrono>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace hooke::app {
+
+namespace {
+
+/// A ball, a flag, a rope and a jelly in a row, 2 m apart, on a ground.
+const char* const kScene = R"({
+  "version": 1, "seconds": 60,
+  "world": {"wind": {"velocity": [1, 0, 0], "gust": 0.5}},
+  "bodies": [
+    {"name": "ground", "shape": {"half_space": {}}},
+    {"name": "ball", "kind": "dynamic", "shape": {"sphere": {"radius": 0.3}}, "position": [0, 0.3, 0], "mass": 2}],
+  "cloths": [{"name": "flag", "corner": [2, 2, 0], "width": 1, "height": 1, "columns": 11, "rows": 11,
+              "pins": [{"column": 0}]}],
+  "ropes": [{"name": "rope", "hook_point": [5, 2, 0], "direction": [0, -1, 0], "length_at_rest": 1}],
+  "solids": [{"name": "jelly", "cells": [3, 3, 3], "size": [0.5, 0.5, 0.5], "position": [7, 0.25, 0]}]
+})";
+
+Simulation make_simulation() {
+  Loaded<Scene> scene = parse_scene(kScene, "scene.json");
+  for (const Error& error : scene.errors) FAIL(to_line(error));
+  Loaded<Simulation> simulation = Simulation::create(std::move(*scene.value));
+  for (const Error& error : simulation.errors) FAIL(to_line(error));
+  return std::move(*simulation.value);
+}
+
+constexpr std::size_t kBudget = std::size_t{64} << 20;
+
+/// Looks along -z at a place.
+Ray ray_at(double x, double y) {
+  return {{x, y, 5}, {0, 0, -20}};
+}
+
+void make_steps(Player& player, int count) {
+  for (int i = 0; i < count; ++i) REQUIRE(player.step().has_value());
+}
+
+std::uint64_t hash_of(const Player& player) {
+  return player.simulation().world().state_hash();
+}
+
+DVec3 place_of(const Player& player, const std::string& name) {
+  const SceneObject* object = player.simulation().find(name);
+  REQUIRE(object != nullptr);
+  return player.simulation().world().pose(object->body).position;
+}
+
+/// Grabs the ball, pulls it up and to the right for `steps`, and lets go.
+void throw_ball(Player& player, int steps) {
+  const DVec3 place = place_of(player, "ball");
+  REQUIRE(player.act(Grab{ray_at(place.x, place.y)}).done);
+  for (int i = 0; i < steps; ++i) {
+    REQUIRE(player.act(MoveHand{place + DVec3{-0.02 * i, 0.03 * i, 0}}).done);
+    make_steps(player, 1);
+  }
+  REQUIRE(player.act(Release{}).done);
+}
+
+}  // namespace
+
+TEST_SUITE("session/player") {
+  TEST_CASE("each kind of object is grabbed, named, pulled and let go") {
+    Player player(make_simulation(), kBudget);
+    make_steps(player, 5);
+    const std::vector<std::pair<std::string, Ray>> targets = {{"ball", ray_at(0, 0.3)},
+                                                              {"flag", ray_at(2.3, 1.8)},
+                                                              {"rope", ray_at(5, 1.2)},
+                                                              {"jelly", ray_at(7, 0.25)}};
+    for (const auto& [name, ray] : targets) {
+      CAPTURE(name);
+      const Outcome grabbed = player.act(Grab{ray});
+      CHECK(grabbed.text == "grabbed '" + name + "'");
+      CHECK(player.held() == name);
+      const DVec3 start = player.hand().place(player.simulation().world());
+      REQUIRE(player.act(MoveHand{start + DVec3{0, 0.3, 0.2}}).done);
+      make_steps(player, 60);
+      CHECK(length(player.hand().place(player.simulation().world()) - start) > 0.2);
+      CHECK(player.act(Release{}).text == "let go of '" + name + "'");
+      CHECK(player.held().empty());
+    }
+    CHECK_FALSE(player.act(Grab{ray_at(0, 50)}).done);
+    CHECK(player.act(Grab{{{-3, 3, 0}, {0, -10, 0}}}).text == "'ground' cannot be moved");
+    CHECK_FALSE(player.act(Release{}).done);
+    CHECK(player.undo_count() == 4);
+  }
+
+  TEST_CASE("undo gives back the state before, to the bit, one action after the other") {
+    Player player(make_simulation(), kBudget);
+    make_steps(player, 20);
+    const std::uint64_t first = hash_of(player);
+    throw_ball(player, 10);
+    make_steps(player, 13);
+    const std::uint64_t second = hash_of(player);
+    REQUIRE(player.act(Shoot{ray_at(7, 0.3)}).done);
+    make_steps(player, 30);
+    CHECK(player.undo_count() == 2);
+    CHECK(player.undo().text == "undone: shot");
+    CHECK(hash_of(player) == second);
+    CHECK(player.step_count() == 43);
+    CHECK(player.last_step() == 43);
+    CHECK(player.undo().text == "undone: grab");
+    CHECK(hash_of(player) == first);
+    CHECK(player.step_count() == 20);
+    CHECK_FALSE(player.undo().done);
+  }
+
+  TEST_CASE("a rewind finds every step again, to the bit, with all that was done") {
+    Player player(make_simulation(), kBudget);
+    std::vector<std::uint64_t> hashes = {hash_of(player)};
+    const auto go_on = [&](int count) {
+      for (int i = 0; i < count; ++i) {
+        make_steps(player, 1);
+        hashes.push_back(hash_of(player));
+      }
+    };
+    go_on(17);
+    REQUIRE(player.act(Grab{ray_at(0, 0.3)}).done);
+    hashes.back() = hash_of(player);
+    for (int i = 0; i < 20; ++i) {
+      player.act(MoveHand{{0.02 * i, 0.3 + 0.05 * i, 0}});
+      go_on(1);
+    }
+    player.act(Release{});
+    hashes.back() = hash_of(player);
+    go_on(10);
+    REQUIRE(player.act(Drop{.object = "jelly", .ray = ray_at(0, 3), .distance = 5}).done);
+    hashes.back() = hash_of(player);
+    go_on(30);
+    const std::uint64_t last = player.step_count();
+    for (const std::uint64_t step : {60, 3, 17, 18, 36, 37, 47, 48, 0, 77}) {
+      CAPTURE(step);
+      player.seek(step);
+      CHECK(player.step_count() == step);
+      CHECK(hash_of(player) == hashes[step]);
+      CHECK(player.last_step() == last);
+    }
+    // Played on, it repeats what happened.
+    player.seek(10);
+    make_steps(player, 50);
+    player.seek(60);
+    CHECK(hash_of(player) == hashes[60]);
+    // A new action forgets what came after it.
+    player.seek(30);
+    CHECK(player.held() == "ball");
+    REQUIRE(player.act(Release{}).done);
+    CHECK(player.last_step() == 30);
+    make_steps(player, 30);
+    CHECK(hash_of(player) != hashes[60]);
+    player.restart();
+    CHECK(hash_of(player) == hashes[0]);
+    CHECK(player.undo_count() == 0);
+    make_steps(player, 17);
+    CHECK(player.timeline().actions().empty());
+  }
+
+  TEST_CASE("the timeline keeps to its budget, and still finds every step") {
+    std::size_t one = 0;
+    {
+      Player player(make_simulation(), kBudget);
+      one = player.timeline().bytes();
+    }
+    CHECK(one > 10'000);
+    Player player(make_simulation(), 8 * one);
+    std::vector<std::uint64_t> hashes = {hash_of(player)};
+    for (int i = 0; i < 300; ++i) {
+      if (i == 100) REQUIRE(player.act(Grab{ray_at(7, 0.25)}).done);
+      if (i == 130) REQUIRE(player.act(Release{}).done);
+      make_steps(player, 1);
+      hashes.push_back(hash_of(player));
+      CHECK(player.timeline().bytes() <= 8 * one);
+    }
+    CHECK(player.timeline().interval() > 40);
+    CHECK(player.timeline().moments() >= 3);
+    CHECK(player.undo_count() == 1);
+    for (const std::uint64_t step : {299, 1, 150, 77, 300}) {
+      player.seek(step);
+      CHECK(hash_of(player) == hashes[step]);
+    }
+    // Many actions: those that lie farthest back cannot be undone any more.
+    for (int i = 0; i < 40; ++i) REQUIRE(player.act(Shoot{ray_at(-3, 3)}).done);
+    CHECK(player.undo_count() < 40);
+    CHECK(player.undo_count() > 1);
+    CHECK(player.timeline().moments() >= 2);
+  }
+
+  TEST_CASE("balls fly, copies fall, pins hold, strings tie, and removed objects are gone") {
+    Player player(make_simulation(), kBudget);
+    CHECK(player.act(Shoot{.ray = ray_at(-2, 5), .speed = 10}).text == "shot 'ball_1'");
+    make_steps(player, 30);
+    const DVec3 ball = place_of(player, "ball_1");
+    CHECK(5 - ball.z == doctest::Approx(0.4 + 5).epsilon(0.02));
+    CHECK(5 - ball.y == doctest::Approx(0.5 * 9.81 * 0.25).epsilon(0.05));
+
+    CHECK(player.act(Drop{.object = "ball", .ray = {{-4, 5, 0}, {0, -20, 0}}}).text == "dropped 'ball_2'");
+    CHECK(place_of(player, "ball_2").y == doctest::Approx(0.6));
+    CHECK(player.act(Drop{.object = "flag", .ray = {{-6, 5, 0}, {0, -20, 0}}}).done);
+    CHECK_FALSE(player.act(Drop{.object = "ground", .ray = ray_at(0, 3)}).done);
+    make_steps(player, 60);
+    CHECK(place_of(player, "ball_2").y == doctest::Approx(0.3).epsilon(0.02));
+
+    // A body that is pinned in the air stays there; a second pin lets it fall.
+    REQUIRE(player.act(Grab{ray_at(0, 0.3)}).done);
+    player.act(MoveHand{{0, 2, 0}});
+    make_steps(player, 60);
+    CHECK(player.act(Pin{ray_at(0, place_of(player, "ball").y)}).text == "pinned 'ball'");
+    player.act(Release{});
+    make_steps(player, 60);
+    const double height = place_of(player, "ball").y;
+    CHECK(height > 1.8);
+    // The upper end of the rope is tied to it: unpinned, the ball swings toward the rope as it falls.
+    CHECK(player.act(Tie{ray_at(0, height), ray_at(5, 1.97)}).done);
+    CHECK(player.act(Pin{ray_at(0, height)}).text == "unpinned 'ball'");
+    make_steps(player, 60);
+    const DVec3 swung = place_of(player, "ball");
+    CHECK(swung.x > 0.15);
+
+    const Outcome pinned = player.act(Pin{ray_at(2.95, 1.5)});
+    if (pinned.done) CHECK(pinned.text.starts_with("pinned point"));
+    CHECK(player.act(Remove{ray_at(7, 0.25)}).text == "removed 'jelly'");
+    CHECK(player.simulation().find("jelly") == nullptr);
+    REQUIRE(player.undo().done);
+    CHECK(player.simulation().find("jelly") != nullptr);
+  }
+}
+
+TEST_SUITE("session/session") {
+  Loader loader_of(const char* text, double seconds = 0) {
+    return [text, seconds](const std::function<void(const std::string&)>& progress) -> Loaded<Simulation> {
+      progress("reading");
+      std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+      Loaded<Scene> scene = parse_scene(text, "scene.json");
+      if (!scene) return {.errors = std::move(scene.errors)};
+      return Simulation::create(std::move(*scene.value));
+    };
+  }
+
+  constexpr double kLong = 120;  // Nothing waits for so long but on a machine that is stuck [s].
+
+  TEST_CASE("while it loads, calls return at once, and commands wait") {
+    const auto start = std::chrono::steady_clock::now();
+    Session session(loader_of(kScene, 1), {.playing = false});
+    const std::uint64_t number = session.post(MakeSteps{3});
+    CHECK(session.view()->stage == SessionView::Stage::kLoading);
+    CHECK(session.view()->step == 0);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    CHECK(passed.count() < 0.9);
+    const auto view = session.wait_for([&](const SessionView& v) { return v.commands >= number; }, kLong);
+    REQUIRE(view->stage == SessionView::Stage::kReady);
+    CHECK(view->step == 3);
+    CHECK(view->time == doctest::Approx(0.05));
+    CHECK(view->places.size() == 5);
+    CHECK(view->picture->objects.size() == 5);
+    CHECK(view->droppable == std::vector<std::string>{"ball", "rope", "flag", "jelly"});
+  }
+
+  TEST_CASE("a scene that cannot be built says why") {
+    Session session(loader_of(R"({"version": 1, "bodies": [{"shape": {"sphere": {"radius": -1}}}]})"), {});
+    const auto view =
+        session.wait_for([](const SessionView& v) { return v.stage == SessionView::Stage::kFailed; }, kLong);
+    REQUIRE(view->errors.size() == 1);
+    CHECK(to_line(view->errors[0]).find("radius") != std::string::npos);
+    session.post(Undo{});
+  }
+
+  TEST_CASE("it plays in time and not faster, pauses, steps, rewinds and undoes") {
+    Session session(loader_of(kScene), {});
+    const auto start = std::chrono::steady_clock::now();
+    auto view = session.wait_for([](const SessionView& v) { return v.step >= 20; }, kLong);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    CHECK(passed.count() > 19.0 / 60);
+    const auto done = [&](Command command) {
+      const std::uint64_t number = session.post(std::move(command));
+      return session.wait_for([&](const SessionView& v) { return v.commands >= number; }, kLong);
+    };
+    view = done(Play{false});
+    CHECK_FALSE(view->playing);
+    const std::uint64_t step = view->step;
+    view = done(MakeSteps{5});
+    CHECK(view->step == step + 5);
+    view = done(Action(Grab{ray_at(0, 0.3)}));
+    CHECK(view->said->done);
+    CHECK(view->held == "ball");
+    CHECK(view->undo_count == 1);
+    done(Action(MoveHand{{0, 2, 0}}));
+    view = done(MakeSteps{30});
+    CHECK(view->hand_place.y > 1);
+    view = done(Seek{step});
+    CHECK(view->step == step);
+    CHECK(view->last_step == step + 35);
+    CHECK_FALSE(view->holding);
+    view = done(Seek{step + 35});
+    CHECK(view->held == "ball");
+    view = done(Undo{});
+    CHECK(view->step == step + 5);
+    CHECK_FALSE(view->holding);
+    CHECK(view->timeline_bytes > 0);
+    CHECK(view->timeline_bytes <= view->timeline_budget);
+    view = done(SetSpeed{0.25});
+    const auto slow = std::chrono::steady_clock::now();
+    view = done(Play{true});
+    session.wait_for([&](const SessionView& v) { return v.step >= view->step + 6; }, kLong);
+    const std::chrono::duration<double> slowly = std::chrono::steady_clock::now() - slow;
+    CHECK(slowly.count() > 5 * 4.0 / 60);
+    view = done(Restart{});
+    CHECK(view->step <= 1);
+  }
+
+  TEST_CASE("it stops for good at its time") {
+    Session session(loader_of(kScene), {.stop_time = 0.2});
+    const auto view = session.wait_for([](const SessionView& v) { return v.time > 0 && !v.playing; }, kLong);
+    CHECK(view->time == doctest::Approx(0.2).epsilon(0.01));
+  }
+}
+
+}  // namespace hooke::app
