@@ -1,7 +1,7 @@
 #include "hooke/command_line.h"
 #include "hooke/drawing/drawing_style.h"
-#include "hooke/drawing/scene_drawing.h"
-#include "hooke/view_window.h"
+#include "hooke/session/session.h"
+#include "hooke/view/view_window.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,15 +14,14 @@ namespace hooke::app {
 
 namespace {
 
-/// Assumed height of the picture [px]. In a larger window thin ropes are a little thinner than they could be.
-constexpr int kUsualHeight = 720;
-
 struct CommandOptions {
   std::string path;
   std::optional<double> fit;  ///< [m]
   bool paused = false;
   std::optional<double> seconds;
   std::string screenshot;
+  std::string log;
+  std::optional<double> memory;  ///< [MiB]
   StyleWords style;
   SceneOverrides overrides;
 };
@@ -34,12 +33,16 @@ void describe(CLI::App& app, CommandOptions& options) {
   add_seconds(app, options.seconds, "Close after so much simulated time; never by default");
   app.add_option("--screenshot", options.screenshot, "Write the last picture to this .png")
       ->needs("--seconds");
+  app.add_option("--log", options.log, "Write what is shown to this file, a line of JSON for each picture");
+  add_number(app, "--memory", options.memory, 1, 1e6, "Memory for the timeline [MiB]; 512 by default");
   add_style(app, options.style);
   add_overrides(app, options.overrides);
   app.footer(
-      "Left drag orbits, right drag pans, the wheel zooms. Space plays and pauses, S or right arrow steps, "
-      "R\n"
-      "resets, Escape closes.\n\n"
+      "Drag an object with the left button to grab and throw it; drag on nothing, or with the right button, "
+      "to\n"
+      "turn the camera; the wheel zooms. Space plays and pauses, S steps, B shoots a ball, U undoes, R goes "
+      "back\n"
+      "to the start, the bar below rewinds. The key ? lists all keys.\n\n"
       "Examples:\n"
       "  hooke view scenes/showcase.json\n"
       "  hooke view scenes/paper/fig7.json --bounds sphere,oriented_box\n"
@@ -80,70 +83,29 @@ Result<Scene> scene_of_model(const CommandOptions& options) {
   return scene;
 }
 
-std::optional<Scene> read(const CommandOptions& options, int& code) {
-  code = kBadInput;
-  if (!is_model(options.path)) return read_scene(options.path);
-  auto scene = scene_of_model(options);
-  if (scene) return std::move(scene).value();
-  code = report(scene.error());
-  return std::nullopt;
-}
-
-/// A Show is a simulation that can restart, and its pictures.
-class Show {
- public:
-  Show(Simulation simulation, DrawingStyle style)
-      : simulation_(std::move(simulation)),
-        scene_(simulation_.scene()),
-        style_(std::move(style)),
-        drawing_(style_) {
-    drawing_.record(simulation_);
-  }
-
-  Result<void> advance() {
-    const StepReport step = simulation_.step();
-    if (!step.moved) return Error{ErrorCode::kOutOfRange, scene_.path, "the step did not move"};
-    drawing_.record(simulation_);
-    return {};
-  }
-
-  Result<void> reset() {
-    Loaded<Simulation> built = Simulation::create(scene_, {}, load_options());
-    if (!built) return built.errors.front();
-    simulation_ = std::move(*built.value);
-    drawing_ = SceneDrawing(style_);
-    drawing_.record(simulation_);
-    return {};
-  }
-
-  void fill(render::DrawList& list, double blend) {
-    const double behind = (1 - blend) * static_cast<double>(scene_.dt);
-    drawing_.fill(simulation_.world().time() - behind, kUsualHeight, list);
-    for (const std::string& line : drawing_.take_warnings()) {
-      std::fprintf(stderr, "warning: %s\n", line.c_str());
+/// Returns how the session makes its simulation. A scene was read before; a model is read by the loader.
+Loader loader_of(const CommandOptions& options, std::optional<Scene> scene) {
+  return [options, scene = std::move(scene)](
+             const std::function<void(const std::string&)>& progress) -> Loaded<Simulation> {
+    progress(std::filesystem::path(options.path).filename().string());
+    Scene made;
+    if (scene) {
+      made = *scene;
+    } else {
+      auto of_model = scene_of_model(options);
+      if (!of_model) return {.errors = {of_model.error()}};
+      made = std::move(of_model).value();
     }
-  }
-
-  [[nodiscard]] const World& world() const { return simulation_.world(); }
-  [[nodiscard]] const Scene& scene() const { return scene_; }
-
- private:
-  Simulation simulation_;
-  Scene scene_;
-  DrawingStyle style_;
-  SceneDrawing drawing_;
-};
-
-ViewModel model_of(Show& show) {
-  return {.advance = [&show] { return show.advance(); },
-          .reset = [&show] { return show.reset(); },
-          .fill = [&show](render::DrawList& list, double blend) { show.fill(list, blend); },
-          .energies = [&show]() -> Energies {
-            const Energy energy = show.world().measure().energy;
-            return {energy.kinetic, energy.potential, energy.elastic};
-          },
-          .time = [&show] { return show.world().time(); },
-          .step_seconds = static_cast<double>(show.scene().dt)};
+    apply(options.overrides, made.world);
+    LoadOptions load = load_options();
+    load.progress = [&progress, line = load.progress](std::string_view what, double part) {
+      if (line) line(what, part);
+      progress(std::string(what) + " " + std::to_string(static_cast<int>(100 * part)) + " %");
+    };
+    Loaded<Simulation> built = Simulation::create(std::move(made), {}, load);
+    for (const Error& warning : built.warnings) warn(warning);
+    return built;
+  };
 }
 
 }  // namespace
@@ -156,20 +118,25 @@ int command_view(Arguments arguments) {
 
   auto style = style_of(options.style);
   if (!style) return report(style.error());
-  int code = kGood;
-  auto scene = read(options, code);
-  if (!scene) return code;
-  apply(options.overrides, scene->world);
-  auto simulation = build_simulation(std::move(*scene));
-  if (!simulation) return kBadInput;
-  Show show(std::move(*simulation), std::move(style).value());
+  std::optional<Scene> scene;
+  if (!is_model(options.path)) {
+    scene = read_scene(options.path);
+    if (!scene) return kBadInput;
+  }
   ViewOptions view;
-  view.title = show.scene().title.empty() ? "Hooke" : "Hooke: " + show.scene().title;
-  view.start_paused = options.paused;
+  const std::string name = std::filesystem::path(options.path).filename().string();
+  view.title = "Hooke: " + (scene && !scene->title.empty() ? scene->title : name);
+  view.style = std::move(style).value();
   view.stop_time = options.seconds;
   view.screenshot = options.screenshot;
-  const auto shown = run_view(model_of(show), view);
-  return shown ? kGood : report(shown.error());
+  view.log = options.log;
+  SessionOptions playing = {.playing = !options.paused, .stop_time = options.seconds};
+  if (options.memory) playing.timeline_budget = static_cast<std::size_t>(*options.memory * (1 << 20));
+  Session session(loader_of(options, std::move(scene)), playing);
+  const auto shown = run_view(session, view);
+  if (!shown) return report(shown.error());
+  const auto last = session.view();
+  return last->stage == SessionView::Stage::kFailed ? report(last->errors, {}) : kGood;
 }
 
 }  // namespace hooke::app

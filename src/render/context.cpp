@@ -131,6 +131,10 @@ GLFWwindow* Context::window() const {
   return data_->window;
 }
 
+std::uint32_t Context::take_error() const {
+  return make_current() ? glGetError() : GL_NO_ERROR;
+}
+
 std::string Context::driver() const {
   if (!make_current()) return {};
   const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));

@@ -2,6 +2,7 @@
 
 #include "hooke/result.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -28,6 +29,9 @@ class Context {
 
   /// Returns the window, for input; null for a headless context.
   [[nodiscard]] GLFWwindow* window() const;
+
+  /// Returns the first error of OpenGL since the last call, and forgets it; 0 for none.
+  [[nodiscard]] std::uint32_t take_error() const;
 
   /// Returns the driver's own name, for reports.
   [[nodiscard]] std::string driver() const;

@@ -40,195 +40,195 @@ Ray ray_at(double x, double y) {
   return {{x, y, 5}, {0, 0, -20}};
 }
 
-void make_steps(Player& player, int count) {
-  for (int i = 0; i < count; ++i) REQUIRE(player.step().has_value());
+void make_steps(LiveScene& live, int count) {
+  for (int i = 0; i < count; ++i) REQUIRE(live.step().has_value());
 }
 
-std::uint64_t hash_of(const Player& player) {
-  return player.simulation().world().state_hash();
+std::uint64_t hash_of(const LiveScene& live) {
+  return live.simulation().world().state_hash();
 }
 
-DVec3 place_of(const Player& player, const std::string& name) {
-  const SceneObject* object = player.simulation().find(name);
+DVec3 place_of(const LiveScene& live, const std::string& name) {
+  const SceneObject* object = live.simulation().find(name);
   REQUIRE(object != nullptr);
-  return player.simulation().world().pose(object->body).position;
+  return live.simulation().world().pose(object->body).position;
 }
 
 /// Grabs the ball, pulls it up and to the right for `steps`, and lets go.
-void throw_ball(Player& player, int steps) {
-  const DVec3 place = place_of(player, "ball");
-  REQUIRE(player.act(Grab{ray_at(place.x, place.y)}).done);
+void throw_ball(LiveScene& live, int steps) {
+  const DVec3 place = place_of(live, "ball");
+  REQUIRE(live.act(Grab{ray_at(place.x, place.y)}).done);
   for (int i = 0; i < steps; ++i) {
-    REQUIRE(player.act(MoveHand{place + DVec3{-0.02 * i, 0.03 * i, 0}}).done);
-    make_steps(player, 1);
+    REQUIRE(live.act(MoveHand{place + DVec3{-0.02 * i, 0.03 * i, 0}}).done);
+    make_steps(live, 1);
   }
-  REQUIRE(player.act(Release{}).done);
+  REQUIRE(live.act(Release{}).done);
 }
 
 }  // namespace
 
-TEST_SUITE("session/player") {
+TEST_SUITE("session/live_scene") {
   TEST_CASE("each kind of object is grabbed, named, pulled and let go") {
-    Player player(make_simulation(), kBudget);
-    make_steps(player, 5);
+    LiveScene live(make_simulation(), kBudget);
+    make_steps(live, 5);
     const std::vector<std::pair<std::string, Ray>> targets = {{"ball", ray_at(0, 0.3)},
                                                               {"flag", ray_at(2.3, 1.8)},
                                                               {"rope", ray_at(5, 1.2)},
                                                               {"jelly", ray_at(7, 0.25)}};
     for (const auto& [name, ray] : targets) {
       CAPTURE(name);
-      const Outcome grabbed = player.act(Grab{ray});
+      const Outcome grabbed = live.act(Grab{ray});
       CHECK(grabbed.text == "grabbed '" + name + "'");
-      CHECK(player.held() == name);
-      const DVec3 start = player.hand().place(player.simulation().world());
-      REQUIRE(player.act(MoveHand{start + DVec3{0, 0.3, 0.2}}).done);
-      make_steps(player, 60);
-      CHECK(length(player.hand().place(player.simulation().world()) - start) > 0.2);
-      CHECK(player.act(Release{}).text == "let go of '" + name + "'");
-      CHECK(player.held().empty());
+      CHECK(live.held() == name);
+      const DVec3 start = live.hand().place(live.simulation().world());
+      REQUIRE(live.act(MoveHand{start + DVec3{0, 0.3, 0.2}}).done);
+      make_steps(live, 60);
+      CHECK(length(live.hand().place(live.simulation().world()) - start) > 0.2);
+      CHECK(live.act(Release{}).text == "let go of '" + name + "'");
+      CHECK(live.held().empty());
     }
-    CHECK_FALSE(player.act(Grab{ray_at(0, 50)}).done);
-    CHECK(player.act(Grab{{{-3, 3, 0}, {0, -10, 0}}}).text == "'ground' cannot be moved");
-    CHECK_FALSE(player.act(Release{}).done);
-    CHECK(player.undo_count() == 4);
+    CHECK_FALSE(live.act(Grab{ray_at(0, 50)}).done);
+    CHECK(live.act(Grab{{{-3, 3, 0}, {0, -10, 0}}}).text == "'ground' cannot be moved");
+    CHECK_FALSE(live.act(Release{}).done);
+    CHECK(live.undo_count() == 4);
   }
 
   TEST_CASE("undo gives back the state before, to the bit, one action after the other") {
-    Player player(make_simulation(), kBudget);
-    make_steps(player, 20);
-    const std::uint64_t first = hash_of(player);
-    throw_ball(player, 10);
-    make_steps(player, 13);
-    const std::uint64_t second = hash_of(player);
-    REQUIRE(player.act(Shoot{ray_at(7, 0.3)}).done);
-    make_steps(player, 30);
-    CHECK(player.undo_count() == 2);
-    CHECK(player.undo().text == "undone: shot");
-    CHECK(hash_of(player) == second);
-    CHECK(player.step_count() == 43);
-    CHECK(player.last_step() == 43);
-    CHECK(player.undo().text == "undone: grab");
-    CHECK(hash_of(player) == first);
-    CHECK(player.step_count() == 20);
-    CHECK_FALSE(player.undo().done);
+    LiveScene live(make_simulation(), kBudget);
+    make_steps(live, 20);
+    const std::uint64_t first = hash_of(live);
+    throw_ball(live, 10);
+    make_steps(live, 13);
+    const std::uint64_t second = hash_of(live);
+    REQUIRE(live.act(Shoot{ray_at(7, 0.3)}).done);
+    make_steps(live, 30);
+    CHECK(live.undo_count() == 2);
+    CHECK(live.undo().text == "undone: shot");
+    CHECK(hash_of(live) == second);
+    CHECK(live.step_count() == 43);
+    CHECK(live.last_step() == 43);
+    CHECK(live.undo().text == "undone: grab");
+    CHECK(hash_of(live) == first);
+    CHECK(live.step_count() == 20);
+    CHECK_FALSE(live.undo().done);
   }
 
   TEST_CASE("a rewind finds every step again, to the bit, with all that was done") {
-    Player player(make_simulation(), kBudget);
-    std::vector<std::uint64_t> hashes = {hash_of(player)};
+    LiveScene live(make_simulation(), kBudget);
+    std::vector<std::uint64_t> hashes = {hash_of(live)};
     const auto go_on = [&](int count) {
       for (int i = 0; i < count; ++i) {
-        make_steps(player, 1);
-        hashes.push_back(hash_of(player));
+        make_steps(live, 1);
+        hashes.push_back(hash_of(live));
       }
     };
     go_on(17);
-    REQUIRE(player.act(Grab{ray_at(0, 0.3)}).done);
-    hashes.back() = hash_of(player);
+    REQUIRE(live.act(Grab{ray_at(0, 0.3)}).done);
+    hashes.back() = hash_of(live);
     for (int i = 0; i < 20; ++i) {
-      player.act(MoveHand{{0.02 * i, 0.3 + 0.05 * i, 0}});
+      live.act(MoveHand{{0.02 * i, 0.3 + 0.05 * i, 0}});
       go_on(1);
     }
-    player.act(Release{});
-    hashes.back() = hash_of(player);
+    live.act(Release{});
+    hashes.back() = hash_of(live);
     go_on(10);
-    REQUIRE(player.act(Drop{.object = "jelly", .ray = ray_at(0, 3), .distance = 5}).done);
-    hashes.back() = hash_of(player);
+    REQUIRE(live.act(Drop{.object = "jelly", .ray = ray_at(0, 3), .distance = 5}).done);
+    hashes.back() = hash_of(live);
     go_on(30);
-    const std::uint64_t last = player.step_count();
+    const std::uint64_t last = live.step_count();
     for (const std::uint64_t step : {60, 3, 17, 18, 36, 37, 47, 48, 0, 77}) {
       CAPTURE(step);
-      player.seek(step);
-      CHECK(player.step_count() == step);
-      CHECK(hash_of(player) == hashes[step]);
-      CHECK(player.last_step() == last);
+      live.seek(step);
+      CHECK(live.step_count() == step);
+      CHECK(hash_of(live) == hashes[step]);
+      CHECK(live.last_step() == last);
     }
     // Played on, it repeats what happened.
-    player.seek(10);
-    make_steps(player, 50);
-    player.seek(60);
-    CHECK(hash_of(player) == hashes[60]);
+    live.seek(10);
+    make_steps(live, 50);
+    live.seek(60);
+    CHECK(hash_of(live) == hashes[60]);
     // A new action forgets what came after it.
-    player.seek(30);
-    CHECK(player.held() == "ball");
-    REQUIRE(player.act(Release{}).done);
-    CHECK(player.last_step() == 30);
-    make_steps(player, 30);
-    CHECK(hash_of(player) != hashes[60]);
-    player.restart();
-    CHECK(hash_of(player) == hashes[0]);
-    CHECK(player.undo_count() == 0);
-    make_steps(player, 17);
-    CHECK(player.timeline().actions().empty());
+    live.seek(30);
+    CHECK(live.held() == "ball");
+    REQUIRE(live.act(Release{}).done);
+    CHECK(live.last_step() == 30);
+    make_steps(live, 30);
+    CHECK(hash_of(live) != hashes[60]);
+    live.restart();
+    CHECK(hash_of(live) == hashes[0]);
+    CHECK(live.undo_count() == 0);
+    make_steps(live, 17);
+    CHECK(live.timeline().actions().empty());
   }
 
   TEST_CASE("the timeline keeps to its budget, and still finds every step") {
     std::size_t one = 0;
     {
-      Player player(make_simulation(), kBudget);
-      one = player.timeline().bytes();
+      LiveScene live(make_simulation(), kBudget);
+      one = live.timeline().bytes();
     }
     CHECK(one > 10'000);
-    Player player(make_simulation(), 8 * one);
-    std::vector<std::uint64_t> hashes = {hash_of(player)};
+    LiveScene live(make_simulation(), 8 * one);
+    std::vector<std::uint64_t> hashes = {hash_of(live)};
     for (int i = 0; i < 300; ++i) {
-      if (i == 100) REQUIRE(player.act(Grab{ray_at(7, 0.25)}).done);
-      if (i == 130) REQUIRE(player.act(Release{}).done);
-      make_steps(player, 1);
-      hashes.push_back(hash_of(player));
-      CHECK(player.timeline().bytes() <= 8 * one);
+      if (i == 100) REQUIRE(live.act(Grab{ray_at(7, 0.25)}).done);
+      if (i == 130) REQUIRE(live.act(Release{}).done);
+      make_steps(live, 1);
+      hashes.push_back(hash_of(live));
+      CHECK(live.timeline().bytes() <= 8 * one);
     }
-    CHECK(player.timeline().interval() > 40);
-    CHECK(player.timeline().moments() >= 3);
-    CHECK(player.undo_count() == 1);
+    CHECK(live.timeline().interval() > 40);
+    CHECK(live.timeline().moments() >= 3);
+    CHECK(live.undo_count() == 1);
     for (const std::uint64_t step : {299, 1, 150, 77, 300}) {
-      player.seek(step);
-      CHECK(hash_of(player) == hashes[step]);
+      live.seek(step);
+      CHECK(hash_of(live) == hashes[step]);
     }
     // Many actions: those that lie farthest back cannot be undone any more.
-    for (int i = 0; i < 40; ++i) REQUIRE(player.act(Shoot{ray_at(-3, 3)}).done);
-    CHECK(player.undo_count() < 40);
-    CHECK(player.undo_count() > 1);
-    CHECK(player.timeline().moments() >= 2);
+    for (int i = 0; i < 40; ++i) REQUIRE(live.act(Shoot{ray_at(-3, 3)}).done);
+    CHECK(live.undo_count() < 40);
+    CHECK(live.undo_count() > 1);
+    CHECK(live.timeline().moments() >= 2);
   }
 
   TEST_CASE("balls fly, copies fall, pins hold, strings tie, and removed objects are gone") {
-    Player player(make_simulation(), kBudget);
-    CHECK(player.act(Shoot{.ray = ray_at(-2, 5), .speed = 10}).text == "shot 'ball_1'");
-    make_steps(player, 30);
-    const DVec3 ball = place_of(player, "ball_1");
+    LiveScene live(make_simulation(), kBudget);
+    CHECK(live.act(Shoot{.ray = ray_at(-2, 5), .speed = 10}).text == "shot 'ball_1'");
+    make_steps(live, 30);
+    const DVec3 ball = place_of(live, "ball_1");
     CHECK(5 - ball.z == doctest::Approx(0.4 + 5).epsilon(0.02));
     CHECK(5 - ball.y == doctest::Approx(0.5 * 9.81 * 0.25).epsilon(0.05));
 
-    CHECK(player.act(Drop{.object = "ball", .ray = {{-4, 5, 0}, {0, -20, 0}}}).text == "dropped 'ball_2'");
-    CHECK(place_of(player, "ball_2").y == doctest::Approx(0.6));
-    CHECK(player.act(Drop{.object = "flag", .ray = {{-6, 5, 0}, {0, -20, 0}}}).done);
-    CHECK_FALSE(player.act(Drop{.object = "ground", .ray = ray_at(0, 3)}).done);
-    make_steps(player, 60);
-    CHECK(place_of(player, "ball_2").y == doctest::Approx(0.3).epsilon(0.02));
+    CHECK(live.act(Drop{.object = "ball", .ray = {{-4, 5, 0}, {0, -20, 0}}}).text == "dropped 'ball_2'");
+    CHECK(place_of(live, "ball_2").y == doctest::Approx(0.6));
+    CHECK(live.act(Drop{.object = "flag", .ray = {{-6, 5, 0}, {0, -20, 0}}}).done);
+    CHECK_FALSE(live.act(Drop{.object = "ground", .ray = ray_at(0, 3)}).done);
+    make_steps(live, 60);
+    CHECK(place_of(live, "ball_2").y == doctest::Approx(0.3).epsilon(0.02));
 
     // A body that is pinned in the air stays there; a second pin lets it fall.
-    REQUIRE(player.act(Grab{ray_at(0, 0.3)}).done);
-    player.act(MoveHand{{0, 2, 0}});
-    make_steps(player, 60);
-    CHECK(player.act(Pin{ray_at(0, place_of(player, "ball").y)}).text == "pinned 'ball'");
-    player.act(Release{});
-    make_steps(player, 60);
-    const double height = place_of(player, "ball").y;
+    REQUIRE(live.act(Grab{ray_at(0, 0.3)}).done);
+    live.act(MoveHand{{0, 2, 0}});
+    make_steps(live, 60);
+    CHECK(live.act(Pin{ray_at(0, place_of(live, "ball").y)}).text == "pinned 'ball'");
+    live.act(Release{});
+    make_steps(live, 60);
+    const double height = place_of(live, "ball").y;
     CHECK(height > 1.8);
     // The upper end of the rope is tied to it: unpinned, the ball swings toward the rope as it falls.
-    CHECK(player.act(Tie{ray_at(0, height), ray_at(5, 1.97)}).done);
-    CHECK(player.act(Pin{ray_at(0, height)}).text == "unpinned 'ball'");
-    make_steps(player, 60);
-    const DVec3 swung = place_of(player, "ball");
+    CHECK(live.act(Tie{ray_at(0, height), ray_at(5, 1.97)}).done);
+    CHECK(live.act(Pin{ray_at(0, height)}).text == "unpinned 'ball'");
+    make_steps(live, 60);
+    const DVec3 swung = place_of(live, "ball");
     CHECK(swung.x > 0.15);
 
-    const Outcome pinned = player.act(Pin{ray_at(2.95, 1.5)});
+    const Outcome pinned = live.act(Pin{ray_at(2.95, 1.5)});
     if (pinned.done) CHECK(pinned.text.starts_with("pinned point"));
-    CHECK(player.act(Remove{ray_at(7, 0.25)}).text == "removed 'jelly'");
-    CHECK(player.simulation().find("jelly") == nullptr);
-    REQUIRE(player.undo().done);
-    CHECK(player.simulation().find("jelly") != nullptr);
+    CHECK(live.act(Remove{ray_at(7, 0.25)}).text == "removed 'jelly'");
+    CHECK(live.simulation().find("jelly") == nullptr);
+    REQUIRE(live.undo().done);
+    CHECK(live.simulation().find("jelly") != nullptr);
   }
 }
 

@@ -114,10 +114,10 @@ bool Session::load() {
     publish(state_);
     return false;
   }
-  player_ = std::make_unique<Player>(std::move(*loaded.value), options_.timeline_budget);
+  live_ = std::make_unique<LiveScene>(std::move(*loaded.value), options_.timeline_budget);
   state_.stage = SessionView::Stage::kReady;
-  state_.step_seconds = static_cast<double>(player_->simulation().scene().dt);
-  state_.droppable = names_to_drop(player_->simulation().scene());
+  state_.step_seconds = static_cast<double>(live_->simulation().scene().dt);
+  state_.droppable = names_to_drop(live_->simulation().scene());
   due_ = WallClock::now();
   publish();
   return true;
@@ -155,7 +155,7 @@ std::vector<Command> Session::wait() {
 }
 
 void Session::obey(const Action& action) {
-  const Outcome outcome = player_->act(action);
+  const Outcome outcome = live_->act(action);
   if (std::holds_alternative<Grab>(action)) {
     state_.last_grab = state_.commands;
     state_.last_grab_done = outcome.done;
@@ -181,21 +181,21 @@ void Session::obey(const Command& command) {
     due_ = WallClock::now();
   } else if (const auto* seek = std::get_if<Seek>(&command)) {
     state_.playing = false;
-    player_->seek(seek->step);
+    live_->seek(seek->step);
     state_.problem.clear();
   } else if (holds<Undo>(command)) {
-    state_.said = player_->undo();
+    state_.said = live_->undo();
     state_.said_by = state_.commands;
     state_.problem.clear();
   } else {
-    player_->restart();
+    live_->restart();
     state_.problem.clear();
   }
 }
 
 void Session::step() {
   const auto start = WallClock::now();
-  const Result<void> done = player_->step();
+  const Result<void> done = live_->step();
   smooth(state_.step_ms, std::chrono::duration<double, std::milli>(WallClock::now() - start).count());
   if (done) return;
   state_.playing = false;
@@ -203,7 +203,7 @@ void Session::step() {
 }
 
 void Session::step_if_due() {
-  const bool is_over = options_.stop_time && player_->simulation().world().time() >= *options_.stop_time;
+  const bool is_over = options_.stop_time && live_->simulation().world().time() >= *options_.stop_time;
   if (is_over) state_.playing = false;
   if (!state_.playing || WallClock::now() < due_) return;
   step();
@@ -213,19 +213,19 @@ void Session::step_if_due() {
 }
 
 void Session::publish() {
-  const Simulation& simulation = player_->simulation();
+  const Simulation& simulation = live_->simulation();
   const World& world = simulation.world();
-  const Timeline& timeline = player_->timeline();
-  state_.step = player_->step_count();
-  state_.last_step = player_->last_step();
+  const Timeline& timeline = live_->timeline();
+  state_.step = live_->step_count();
+  state_.last_step = live_->last_step();
   state_.time = world.time();
   const Energy energy = world.measure().energy;
   state_.energies = {energy.kinetic, energy.potential, energy.elastic};
-  state_.holding = player_->hand().holds();
-  state_.held = player_->held();
-  state_.hand_place = player_->hand().place(world);
-  state_.hand_target = player_->hand().target();
-  state_.undo_count = player_->undo_count();
+  state_.holding = live_->hand().holds();
+  state_.held = live_->held();
+  state_.hand_place = live_->hand().place(world);
+  state_.hand_target = live_->hand().target();
+  state_.undo_count = live_->undo_count();
   state_.moments = timeline.moments();
   state_.timeline_bytes = timeline.bytes();
   state_.timeline_interval = timeline.interval();

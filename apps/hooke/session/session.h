@@ -3,7 +3,7 @@
 #include "hooke/drawing/scene_capture.h"
 #include "hooke/scene_io.h"
 #include "hooke/session/action.h"
-#include "hooke/session/player.h"
+#include "hooke/session/live_scene.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -140,9 +140,9 @@ class Session {
 
   Loader loader_;
   SessionOptions options_;
-  std::unique_ptr<Player> player_;
+  std::unique_ptr<LiveScene> live_;
   SceneCapture capture_;
-  SessionView state_;          ///< The next view, but for what follows from the player.
+  SessionView state_;          ///< The next view, but for what follows from the scene.
   WallClock::time_point due_;  ///< When the next step is due.
 
   mutable std::mutex mutex_;  ///< Guards what follows.

@@ -1,4 +1,4 @@
-#include "hooke/session/player.h"
+#include "hooke/session/live_scene.h"
 
 #include "hooke/session/added_objects.h"
 
@@ -108,13 +108,13 @@ std::string in_meters(double length) {
 
 }  // namespace
 
-Player::Player(Simulation simulation, std::size_t budget)
+LiveScene::LiveScene(Simulation simulation, std::size_t budget)
     : simulation_(std::move(simulation)), timeline_(budget) {
   last_step_ = step_count();
   timeline_.add(moment(""));
 }
 
-Moment Player::moment(std::string_view before) const {
+Moment LiveScene::moment(std::string_view before) const {
   return {.snapshot = simulation_.snapshot(),
           .hand = hand_,
           .step = step_count(),
@@ -123,14 +123,14 @@ Moment Player::moment(std::string_view before) const {
           .before = std::string(before)};
 }
 
-void Player::go_to(const Moment& moment) {
+void LiveScene::go_to(const Moment& moment) {
   (void)simulation_.restore(moment.snapshot);  // It is not empty.
   hand_ = moment.hand;
   next_action_ = moment.actions;
   added_ = moment.added;
 }
 
-Outcome Player::act(const Action& action) {
+Outcome LiveScene::act(const Action& action) {
   const std::string_view title = title_of(action);
   if (title.empty() && !hand_.holds()) return {false, "nothing is held"};
   std::optional<Moment> before;
@@ -146,13 +146,13 @@ Outcome Player::act(const Action& action) {
   return outcome;
 }
 
-void Player::repeat_actions() {
+void LiveScene::repeat_actions() {
   const std::vector<LoggedAction>& log = timeline_.actions();
   for (; next_action_ < log.size() && log[next_action_].step <= step_count(); ++next_action_)
     perform(log[next_action_].action);
 }
 
-Result<void> Player::step() {
+Result<void> LiveScene::step() {
   repeat_actions();
   const Result<bool> held = hand_.before_step(simulation_.world(), simulation_.scene().dt);
   if (!held) hand_.release(simulation_.world());
@@ -163,7 +163,7 @@ Result<void> Player::step() {
   return {};
 }
 
-void Player::seek(std::uint64_t step) {
+void LiveScene::seek(std::uint64_t step) {
   const std::uint64_t target = std::min(step, last_step_);
   const Moment* start = timeline_.find(target);
   const bool is_behind = target < step_count();
@@ -173,7 +173,7 @@ void Player::seek(std::uint64_t step) {
   repeat_actions();
 }
 
-Outcome Player::undo() {
+Outcome LiveScene::undo() {
   const Moment* before = timeline_.find_undo(next_action_);
   if (before == nullptr) return {false, "there is nothing to undo"};
   const Moment place = *before;
@@ -184,7 +184,7 @@ Outcome Player::undo() {
   return {true, "undone: " + place.before};
 }
 
-void Player::restart() {
+void LiveScene::restart() {
   const Moment* start = timeline_.find(0);
   if (start == nullptr) return;
   const Moment place = *start;
@@ -194,18 +194,18 @@ void Player::restart() {
   last_step_ = step_count();
 }
 
-std::string Player::held() const {
+std::string LiveScene::held() const {
   return hand_.holds() ? name_of(hand_.body(), hand_.object()) : std::string();
 }
 
-std::string Player::name_of(BodyId body, PointRef point) const {
+std::string LiveScene::name_of(BodyId body, PointRef point) const {
   for (const SceneObject& object : simulation_.objects()) {
     if (body ? object.body == body : is_of(object, point)) return object.name;
   }
   return {};
 }
 
-std::optional<Player::Target> Player::find(const Ray& ray) const {
+std::optional<LiveScene::Target> LiveScene::find(const Ray& ray) const {
   const World& world = simulation_.world();
   const auto body = world.cast_ray(ray.origin, ray.motion);
   const auto object = world.cast_ray_on_deformables(ray.origin, ray.motion, {.margin = kMargin});
@@ -222,11 +222,11 @@ std::optional<Player::Target> Player::find(const Ray& ray) const {
   return target;
 }
 
-Outcome Player::perform(const Action& action) {
+Outcome LiveScene::perform(const Action& action) {
   return std::visit([&](const auto& one) { return perform(one); }, action);
 }
 
-Outcome Player::perform(const Grab& grab) {
+Outcome LiveScene::perform(const Grab& grab) {
   const std::optional<Target> target = find(grab.ray);
   if (!target || target->name.empty()) return {false, "there is nothing to grab"};
   World& world = simulation_.world();
@@ -242,18 +242,18 @@ Outcome Player::perform(const Grab& grab) {
   return {true, "grabbed '" + target->name + "'"};
 }
 
-Outcome Player::perform(const MoveHand& move) {
+Outcome LiveScene::perform(const MoveHand& move) {
   hand_.move_to(move.target);
   return {true, ""};
 }
 
-Outcome Player::perform(const Release& /*release*/) {
+Outcome LiveScene::perform(const Release& /*release*/) {
   const std::string name = held();
   hand_.release(simulation_.world());
   return {true, "let go of '" + name + "'"};
 }
 
-std::string Player::new_name(std::string_view kind) {
+std::string LiveScene::new_name(std::string_view kind) {
   std::string name;
   do {
     name = std::string(kind) + "_" + std::to_string(++added_);
@@ -261,7 +261,7 @@ std::string Player::new_name(std::string_view kind) {
   return name;
 }
 
-Outcome Player::add(const SceneObjects& objects, const std::string& text) {
+Outcome LiveScene::add(const SceneObjects& objects, const std::string& text) {
   const SimulationSnapshot before = simulation_.snapshot();
   const std::vector<Error> errors = simulation_.add(objects);
   if (errors.empty()) return {true, text};
@@ -269,7 +269,7 @@ Outcome Player::add(const SceneObjects& objects, const std::string& text) {
   return {false, to_line(errors.front())};
 }
 
-Outcome Player::perform(const Shoot& shoot) {
+Outcome LiveScene::perform(const Shoot& shoot) {
   const DVec3 direction = normalize(shoot.ray.motion);
   SceneBody ball;
   ball.tag.name = new_name("ball");
@@ -281,7 +281,7 @@ Outcome Player::perform(const Shoot& shoot) {
   return add({.bodies = {ball}}, "shot '" + ball.tag.name + "'");
 }
 
-Outcome Player::perform(const Drop& drop) {
+Outcome LiveScene::perform(const Drop& drop) {
   const std::optional<Target> target = find(drop.ray);
   DVec3 place = target ? target->place : drop.ray.origin + drop.distance * normalize(drop.ray.motion);
   const std::string name = new_name(drop.object);
@@ -291,7 +291,7 @@ Outcome Player::perform(const Drop& drop) {
   return add(*copy_of(simulation_.scene(), drop.object, place, name), "dropped '" + name + "'");
 }
 
-Outcome Player::perform(const Pin& pin) {
+Outcome LiveScene::perform(const Pin& pin) {
   const std::optional<Target> target = find(pin.ray);
   if (!target || target->name.empty()) return {false, "there is nothing to pin"};
   if (target->body) return pin_body(*target);
@@ -303,7 +303,7 @@ Outcome Player::perform(const Pin& pin) {
                     " of '" + target->name + "'"};
 }
 
-Outcome Player::pin_body(const Target& target) {
+Outcome LiveScene::pin_body(const Target& target) {
   const auto objects = simulation_.objects();
   const auto pin = std::find_if(objects.begin(), objects.end(), [&](const SceneObject& object) {
     return object.kind == SceneObject::Kind::kHook && object.hook_kind == HookKind::kFixed &&
@@ -322,7 +322,7 @@ Outcome Player::pin_body(const Target& target) {
   return add({.hooks = {hook}}, "pinned '" + target.name + "'");
 }
 
-Outcome Player::perform(const Tie& tie) {
+Outcome LiveScene::perform(const Tie& tie) {
   const std::optional<Target> a = find(tie.first);
   const std::optional<Target> b = find(tie.second);
   if (!a || !b || a->name.empty() || b->name.empty()) return {false, "there is nothing to tie"};
@@ -340,7 +340,7 @@ Outcome Player::perform(const Tie& tie) {
              "tied '" + a->name + "' to '" + b->name + "' by a string of " + in_meters(distance));
 }
 
-Outcome Player::perform(const Remove& remove) {
+Outcome LiveScene::perform(const Remove& remove) {
   const std::optional<Target> target = find(remove.ray);
   if (!target || target->name.empty()) return {false, "there is nothing to remove"};
   const Result<void> removed = simulation_.remove(target->name);

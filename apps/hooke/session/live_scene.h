@@ -17,10 +17,10 @@ namespace hooke::app {
 ///
 /// After a rewind, steps repeat what happened, with all actions, up to the last step that was made. The first
 /// new action forgets what came after it.
-class Player {
+class LiveScene {
  public:
   /// `budget` is the memory for the timeline [bytes].
-  Player(Simulation simulation, std::size_t budget);
+  LiveScene(Simulation simulation, std::size_t budget);
 
   /// Does an action now. What failed changes nothing.
   Outcome act(const Action& action);

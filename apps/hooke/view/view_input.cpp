@@ -1,0 +1,164 @@
+#include "hooke/view/view_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+constexpr float kRadiansPerPixel = 0.006F;
+constexpr float kZoomPerNotch = 0.9F;
+/// Radius [m] and speed [m/s] of a ball for each meter between the camera and what it turns about, within
+/// bounds: a scene of a doll's house and one of a town both want balls that fit.
+constexpr double kBallRadius = 0.015;
+constexpr double kBallSpeed = 3;
+
+constexpr ViewInput::KeyHelp kHelp[] = {
+    {"left drag", "grabs what is under the mouse and throws it; on nothing it turns the camera"},
+    {"right drag", "turns the camera"},
+    {"middle drag", "moves the camera sideways"},
+    {"wheel", "zooms; while something is held, it moves it away and nearer"},
+    {"space", "plays and pauses"},
+    {"S, right", "pauses and makes one step"},
+    {"left", "pauses and goes one step back"},
+    {"-, +", "half and double speed"},
+    {"R", "goes back to the start"},
+    {"U, Ctrl+Z", "goes back to before the last grab, shot, drop, pin, string or removal"},
+    {"B", "shoots a ball at what is under the mouse"},
+    {"D", "drops a copy of the chosen object there"},
+    {"P", "pins what is under the mouse, or lets it go"},
+    {"H", "ties: once at each end of a string"},
+    {"Delete", "removes what is under the mouse"},
+    {"?, F1", "shows and hides this page"},
+    {"Escape", "closes this page, or the window"},
+};
+
+}  // namespace
+
+std::span<const ViewInput::KeyHelp> ViewInput::help() {
+  return kHelp;
+}
+
+void ViewInput::look(const Eye& eye, const SessionView& view, std::array<double, 2> mouse) {
+  const std::array<double, 2> motion = {mouse[0] - mouse_[0], mouse[1] - mouse_[1]};
+  eye_ = eye;
+  mouse_ = mouse;
+  playing_ = view.playing;
+  speed_ = view.speed;
+  step_ = view.step;
+  if (chosen_.empty() && !view.droppable.empty()) chosen_ = view.droppable.front();
+  if (drag_ == Drag::kAsks && view.last_grab >= grab_) {
+    const bool holds = view.last_grab == grab_ && view.last_grab_done;
+    drag_ = holds ? Drag::kHand : Drag::kTurn;
+    depth_ = depth_of(eye_, view.hand_place);
+    sent_.reset();
+    if (drag_ == Drag::kTurn) drag_on(std::exchange(waiting_, {}));
+  }
+  drag_on(motion);
+}
+
+void ViewInput::drag_on(std::array<double, 2> motion) {
+  const auto x = static_cast<float>(motion[0]);
+  const auto y = static_cast<float>(motion[1]);
+  const auto height = static_cast<float>(eye_.size[1]);
+  switch (drag_) {
+    case Drag::kNone:
+      break;
+    case Drag::kAsks:
+      waiting_ = {waiting_[0] + motion[0], waiting_[1] + motion[1]};
+      break;
+    case Drag::kHand: {
+      const DVec3 target = place_at(eye_, mouse_, depth_);
+      if (sent_ != target) post(Action(MoveHand{target}));
+      sent_ = target;
+      break;
+    }
+    case Drag::kTurn:
+      render::turn(camera_, -kRadiansPerPixel * x, kRadiansPerPixel * y);
+      break;
+    case Drag::kPan:
+      render::pan(camera_, x / height, -y / height);
+      break;
+  }
+}
+
+void ViewInput::press(Button button) {
+  if (drag_ != Drag::kNone) return;
+  if (button == Button::kRight) drag_ = Drag::kTurn;
+  if (button == Button::kMiddle) drag_ = Drag::kPan;
+  if (button != Button::kLeft) return;
+  post(Action(Grab{ray_through(eye_, mouse_)}));
+  grab_ = posted_;
+  waiting_ = {};
+  drag_ = Drag::kAsks;
+}
+
+void ViewInput::release(Button button) {
+  const bool was_left = drag_ == Drag::kAsks || drag_ == Drag::kHand;
+  const bool ends = button == Button::kLeft ? was_left || drag_ == Drag::kTurn
+                                            : drag_ == Drag::kTurn || drag_ == Drag::kPan;
+  if (!ends) return;
+  if (was_left) post(Action(Release{}));
+  drag_ = Drag::kNone;
+}
+
+void ViewInput::wheel(float notches) {
+  if (notches == 0) return;
+  if (drag_ == Drag::kHand) {
+    depth_ *= std::pow(static_cast<double>(kZoomPerNotch), -static_cast<double>(notches));
+    drag_on({});
+  } else {
+    render::zoom(camera_, std::pow(kZoomPerNotch, notches));
+  }
+}
+
+void ViewInput::key(Key key) {
+  const Ray ray = ray_through(eye_, mouse_);
+  const auto distance = static_cast<double>(camera_.distance);
+  if (key != Key::kTie) first_end_.reset();
+  switch (key) {
+    case Key::kPlay:
+      return post(Play{!playing_});
+    case Key::kStep:
+      return post(MakeSteps{1});
+    case Key::kStepBack:
+      return post(Seek{step_ > 0 ? step_ - 1 : 0});
+    case Key::kRestart:
+      return post(Restart{});
+    case Key::kSlower:
+      return post(SetSpeed{speed_ / 2});
+    case Key::kFaster:
+      return post(SetSpeed{speed_ * 2});
+    case Key::kShoot:
+      return post(Action(Shoot{.ray = ray,
+                               .speed = std::clamp(kBallSpeed * distance, 2.0, 100.0),
+                               .radius = std::clamp(kBallRadius * distance, 0.002, 1.0)}));
+    case Key::kDrop:
+      return post(Action(Drop{.object = chosen_, .ray = ray, .distance = distance}));
+    case Key::kPin:
+      return post(Action(Pin{ray}));
+    case Key::kTie:
+      if (first_end_) post(Action(Tie{*first_end_, ray}));
+      first_end_ = first_end_ ? std::nullopt : std::optional(ray);
+      return;
+    case Key::kRemove:
+      return post(Action(Remove{ray}));
+    case Key::kUndo:
+      return post(Undo{});
+    case Key::kHelp:
+      shows_help_ = !shows_help_;
+      return;
+    case Key::kClose:
+      wants_to_close_ = !shows_help_;
+      shows_help_ = false;
+      return;
+  }
+}
+
+std::string_view ViewInput::hint() const {
+  return first_end_ ? "Point at the other end of the string and press H" : "";
+}
+
+}  // namespace hooke::app

@@ -1,0 +1,100 @@
+#pragma once
+
+#include "hooke/session/session.h"
+#include "hooke/view/eye.h"
+
+#include "render/orbit_camera.h"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hooke::app {
+
+/// Turns what mouse and keys do into commands to a session, and into motions of the camera. It knows no
+/// window: the window calls it with what happened since the last picture.
+class ViewInput {
+ public:
+  enum class Button : std::uint8_t { kLeft, kRight, kMiddle };
+  enum class Key : std::uint8_t {
+    kPlay,      ///< Plays and pauses.
+    kStep,      ///< One step on.
+    kStepBack,  ///< One step back.
+    kRestart,   ///< Back to the start.
+    kSlower,    ///< Time passes half as fast.
+    kFaster,    ///< Twice as fast.
+    kShoot,     ///< Shoots a ball at what the mouse points at.
+    kDrop,      ///< Drops a copy of the chosen object there.
+    kPin,       ///< Pins or unpins what the mouse points at.
+    kTie,       ///< The first time takes an end, the second time ties it to another.
+    kRemove,    ///< Removes what the mouse points at.
+    kUndo,      ///< Goes back to before the last action.
+    kHelp,      ///< Shows and hides the page of keys.
+    kClose,     ///< Hides the page of keys, or closes the window.
+  };
+  /// One key of the page of keys.
+  struct KeyHelp {
+    const char* keys;
+    const char* what;
+  };
+
+  ViewInput(Session& session, render::OrbitCamera& camera) : session_(session), camera_(camera) {}
+
+  /// Says what is seen now, and where the mouse is. Call it first in each picture.
+  void look(const Eye& eye, const SessionView& view, std::array<double, 2> mouse);
+  void press(Button button);
+  void release(Button button);
+  /// The mouse wheel was turned by so many notches; positive is away from the user.
+  void wheel(float notches);
+  void key(Key key);
+  /// Which object kDrop drops.
+  void choose(std::string name) { chosen_ = std::move(name); }
+  [[nodiscard]] const std::string& chosen() const { return chosen_; }
+
+  /// A line about what waits for more input; empty for none.
+  [[nodiscard]] std::string_view hint() const;
+  [[nodiscard]] bool shows_help() const { return shows_help_; }
+  [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
+  /// Number of the last command.
+  [[nodiscard]] std::uint64_t posted() const { return posted_; }
+  /// Gives a command that comes from a button of the window.
+  void post(Command command) { posted_ = session_.post(std::move(command)); }
+
+  /// The page of keys.
+  [[nodiscard]] static std::span<const KeyHelp> help();
+
+ private:
+  /// What a pressed button does.
+  enum class Drag : std::uint8_t {
+    kNone,
+    kAsks,  ///< The left button was pressed, and the session has not said yet whether something is there.
+    kHand,  ///< It pulls what the hand holds.
+    kTurn,  ///< It turns the camera.
+    kPan,   ///< It moves the camera sideways.
+  };
+
+  void drag_on(std::array<double, 2> motion);
+
+  Session& session_;
+  render::OrbitCamera& camera_;
+  Eye eye_;
+  bool playing_ = false;
+  double speed_ = 1;
+  std::uint64_t step_ = 0;
+  std::array<double, 2> mouse_ = {};
+  Drag drag_ = Drag::kNone;
+  std::uint64_t grab_ = 0;              ///< Number of the command that asks.
+  double depth_ = 1;                    ///< Depth at which the hand moves [m].
+  std::array<double, 2> waiting_ = {};  ///< Motion of the mouse while it asks.
+  std::optional<DVec3> sent_;           ///< Target that the hand was given last [m].
+  std::optional<Ray> first_end_;        ///< First end of a string.
+  std::string chosen_;
+  bool shows_help_ = false;
+  bool wants_to_close_ = false;
+  std::uint64_t posted_ = 0;
+};
+
+}  // namespace hooke::app

@@ -1,0 +1,58 @@
+#include "hooke/view/view_log.h"
+
+#include <nlohmann/json.hpp>
+
+namespace hooke::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of_place(DVec3 place) {
+  return Json::array({place.x, place.y, place.z});
+}
+
+Json objects_seen(const SessionView& view, const Eye& eye) {
+  Json objects = Json::object();
+  for (const auto& [name, place] : view.places) {
+    const auto pixel = pixel_of(eye, place);
+    objects[name] = {{"place", json_of_place(place)}};
+    if (pixel) objects[name]["pixel"] = *pixel;
+  }
+  return objects;
+}
+
+}  // namespace
+
+Result<void> ViewLog::open(const std::string& path) {
+  if (path.empty()) return {};
+  file_.open(path);
+  if (file_) return {};
+  return Error{ErrorCode::kFileNotWritable, path, "cannot be written"};
+}
+
+void ViewLog::write(const SessionView& view, const Eye& eye, const PictureFacts& facts) {
+  if (!file_.is_open()) return;
+  static constexpr const char* kStages[] = {"loading", "ready", "failed"};
+  Json line = {{"picture", facts.picture},
+               {"stage", kStages[static_cast<int>(view.stage)]},
+               {"posted", facts.posted},
+               {"commands", view.commands},
+               {"step", view.step},
+               {"last_step", view.last_step},
+               {"time", view.time},
+               {"playing", view.playing},
+               {"speed", view.speed},
+               {"held", view.held},
+               {"undo", view.undo_count},
+               {"said", view.said ? view.said->text : ""},
+               {"timeline", facts.timeline},
+               {"help", facts.help},
+               {"gl_error", facts.gl_error},
+               {"size", eye.size},
+               {"objects", objects_seen(view, eye)}};
+  if (view.holding) line["hand"] = json_of_place(view.hand_place);
+  file_ << line.dump() << '\n' << std::flush;
+}
+
+}  // namespace hooke::app

@@ -1,0 +1,191 @@
+#include "hooke/view/view_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui.h>
+#include <string>
+#include <vector>
+
+namespace hooke::app {
+
+namespace {
+
+constexpr std::size_t kHistory = 600;
+constexpr float kPanelWidth = 300;
+const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
+
+/// This is one curve of the plot.
+struct Curve {
+  const char* name = "";
+  ImU32 color = 0;
+  double (*value)(const Energies&) = nullptr;
+};
+
+const std::array<Curve, 4> kCurves = {{
+    {"kinetic", IM_COL32(90, 170, 255, 255), [](const Energies& e) { return e.kinetic; }},
+    {"potential", IM_COL32(120, 210, 120, 255), [](const Energies& e) { return e.potential; }},
+    {"elastic", IM_COL32(240, 150, 80, 255), [](const Energies& e) { return e.elastic; }},
+    {"total", IM_COL32(240, 240, 240, 255),
+     [](const Energies& e) { return e.kinetic + e.potential + e.elastic; }},
+}};
+
+void draw_curve(const std::deque<Energies>& history, const Curve& curve, ImVec2 corner, ImVec2 size,
+                const std::array<double, 2>& range) {
+  std::vector<ImVec2> points;
+  points.reserve(history.size());
+  for (const Energies& energies : history) {
+    const double part = (curve.value(energies) - range[0]) / (range[1] - range[0]);
+    const float along = static_cast<float>(points.size()) / static_cast<float>(kHistory - 1);
+    points.emplace_back(corner.x + along * size.x, corner.y + (1 - static_cast<float>(part)) * size.y);
+  }
+  ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), curve.color, 0,
+                                          1.5F);
+}
+
+void write_wrapped(const std::string& text, ImVec4 color) {
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + kPanelWidth);
+  ImGui::TextColored(color, "%s", text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void build_buttons(const SessionView& view, ViewInput& input) {
+  const ImVec2 button = {68, 0};
+  if (ImGui::Button(view.playing ? "Pause" : "Play", button)) input.key(ViewInput::Key::kPlay);
+  ImGui::SameLine();
+  if (ImGui::Button("Step", button)) input.key(ViewInput::Key::kStep);
+  ImGui::SameLine();
+  if (ImGui::Button("Restart", button)) input.key(ViewInput::Key::kRestart);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(view.undo_count == 0);
+  if (ImGui::Button("Undo", button)) input.key(ViewInput::Key::kUndo);
+  ImGui::EndDisabled();
+}
+
+void build_choice(const SessionView& view, ViewInput& input) {
+  if (view.droppable.empty()) return;
+  ImGui::SetNextItemWidth(160);
+  if (!ImGui::BeginCombo("drop by D", input.chosen().c_str())) return;
+  for (const std::string& name : view.droppable) {
+    if (ImGui::Selectable(name.c_str(), name == input.chosen())) input.choose(name);
+  }
+  ImGui::EndCombo();
+}
+
+void build_help() {
+  const ImVec2 center = ImGui::GetMainViewport()->GetCenter();
+  ImGui::SetNextWindowPos(center, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::Begin("Keys", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoCollapse);
+  if (ImGui::BeginTable("keys", 2)) {
+    for (const ViewInput::KeyHelp& line : ViewInput::help()) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(line.keys);
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(line.what);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+double in_mebibytes(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
+}
+
+}  // namespace
+
+void ViewPanel::note(const SessionView& view) {
+  if (view.stage != SessionView::Stage::kReady) return;
+  if (view.step < noted_step_) history_.clear();
+  noted_step_ = view.step;
+  history_.push_back(view.energies);
+  if (history_.size() > kHistory) history_.pop_front();
+}
+
+/// All curves share one scale, so that one sees energy move from one form to another.
+void ViewPanel::draw_plot() const {
+  std::array<double, 2> range = {0, 0};
+  for (const Energies& energies : history_) {
+    for (const Curve& curve : kCurves) {
+      const double value = curve.value(energies);
+      if (std::isfinite(value)) range = {std::min(range[0], value), std::max(range[1], value)};
+    }
+  }
+  if (!(range[1] > range[0])) range[1] = range[0] + 1;
+  const ImVec2 size = {ImGui::GetContentRegionAvail().x, 130};
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImDrawList* canvas = ImGui::GetWindowDrawList();
+  canvas->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, IM_COL32(0, 0, 0, 110), 4);
+  const float zero = corner.y + size.y * static_cast<float>(range[1] / (range[1] - range[0]));
+  canvas->AddLine({corner.x, zero}, {corner.x + size.x, zero}, IM_COL32(255, 255, 255, 60));
+  canvas->PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, true);
+  for (const Curve& curve : kCurves) draw_curve(history_, curve, corner, size, range);
+  canvas->PopClipRect();
+  ImGui::Dummy(size);
+  for (const Curve& curve : kCurves) {
+    const ImVec4 color = ImGui::ColorConvertU32ToFloat4(curve.color);
+    ImGui::TextColored(color, "%-10s %12.5g J", curve.name, curve.value(history_.back()));
+  }
+}
+
+void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double picture_ms) {
+  ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize({kPanelWidth, 0}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowBgAlpha(0.82F);
+  ImGui::Begin("Simulation", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav);
+  if (view.stage == SessionView::Stage::kLoading) {
+    ImGui::Text("loading %s", view.progress.c_str());
+    ImGui::End();
+    return;
+  }
+  build_buttons(view, input);
+  build_choice(view, input);
+  ImGui::Text("time     %10.3f s, speed %g", view.time, view.speed);
+  ImGui::Text("step     %10.3f ms", view.step_ms);
+  ImGui::Text("pictures %10.1f /s", picture_ms > 0 ? 1000 / picture_ms : 0.0);
+  if (!history_.empty()) draw_plot();
+  if (!view.held.empty()) ImGui::Text("holding '%s'", view.held.c_str());
+  const std::string hint(input.hint());
+  if (!hint.empty()) write_wrapped(hint, {1, 0.9F, 0.5F, 1});
+  if (view.said) write_wrapped(view.said->text, view.said->done ? ImVec4{0.7F, 0.85F, 1, 1} : kWarningColor);
+  if (!view.problem.empty()) write_wrapped(view.problem, kWarningColor);
+  ImGui::TextDisabled("keys: ? or F1");
+  ImGui::End();
+}
+
+void ViewPanel::build_timeline(const SessionView& view, ViewInput& input) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({12, screen.y - 12}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({std::max(screen.x - 24, 100.0F), 0}, ImGuiCond_Always);
+  ImGui::SetNextWindowBgAlpha(0.82F);
+  ImGui::Begin("Timeline", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoNav);
+  std::uint64_t step = wanted_step_.value_or(view.step);
+  const std::uint64_t first = 0;
+  const std::uint64_t last = std::max(view.last_step, std::uint64_t{1});
+  ImGui::SetNextItemWidth(-1);
+  const bool moved = ImGui::SliderScalar("##timeline", ImGuiDataType_U64, &step, &first, &last, "step %llu");
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 high = ImGui::GetItemRectMax();
+  timeline_box_ = {static_cast<double>(low.x), static_cast<double>(low.y), static_cast<double>(high.x),
+                   static_cast<double>(high.y)};
+  if (moved) {
+    wanted_step_ = std::min(step, view.last_step);
+    input.post(Seek{*wanted_step_});
+  }
+  if (!ImGui::IsItemActive()) wanted_step_.reset();
+  ImGui::TextDisabled("%zu states of %.0f of %.0f MiB, one in %llu steps; %zu to undo", view.moments,
+                      in_mebibytes(view.timeline_bytes), in_mebibytes(view.timeline_budget),
+                      static_cast<unsigned long long>(view.timeline_interval), view.undo_count);
+  ImGui::End();
+}
+
+void ViewPanel::build(const SessionView& view, ViewInput& input, double picture_ms) {
+  build_figures(view, input, picture_ms);
+  if (view.stage == SessionView::Stage::kReady) build_timeline(view, input);
+  if (input.shows_help()) build_help();
+}
+
+}  // namespace hooke::app

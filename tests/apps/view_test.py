@@ -1,0 +1,257 @@
+#!/usr/bin/env python3
+"""`hooke view` in a real window, by mouse and keys: view_test.py PROGRAM. It needs Xvfb and xdotool.
+
+It waits for states that the program writes with --log, and never for a time, so that it passes on a busy machine.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = None
+LIMIT = 120  # Seconds after which a state is taken not to come.
+SCENE = """{
+  "version": 1, "seconds": 600,
+  "camera": {"eye": [1.5, 1.6, 7], "target": [1.5, 1.2, 0]},
+  "bodies": [
+    {"name": "ground", "shape": {"half_space": {}}},
+    {"name": "ball", "kind": "dynamic", "shape": {"sphere": {"radius": 0.3}}, "position": [-0.7, 0.3, 0], "mass": 2}],
+  "cloths": [{"name": "flag", "corner": [0.2, 2.2, 0], "width": 1, "height": 1, "columns": 11, "rows": 11,
+              "pins": [{"row": 0}]}],
+  "ropes": [{"name": "rope", "hook_point": [2, 2.4, 0], "direction": [0, -1, 0], "length_at_rest": 1,
+             "radius": 0.03}],
+  "solids": [{"name": "jelly", "cells": [3, 3, 3], "size": [0.6, 0.6, 0.6], "position": [3.2, 0.3, 0],
+              "total_mass": 3}]
+}"""
+
+
+def start_display():
+    """Starts an X server on a display of its own choice, and returns it with the display's name."""
+    read, write = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+                              pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        number = pipe.readline().strip()
+    return server, f":{number}"
+
+
+class Window:
+    """A running `hooke view`, its log, and the mouse and keys of its display."""
+
+    def __init__(self, folder, display, *words):
+        self.log = pathlib.Path(folder) / "log.jsonl"
+        self.log.unlink(missing_ok=True)
+        self.environment = {**os.environ, "DISPLAY": display, "ASAN_OPTIONS": "detect_leaks=0"}
+        self.program = subprocess.Popen([PROGRAM, "view", "scene.json", "--log", str(self.log), *words], cwd=folder,
+                                        env=self.environment, stderr=subprocess.PIPE, text=True)
+        self.read = 0
+        self.last = {}
+        self.gl_errors = set()
+        self.wait("a first picture", lambda s: s["stage"] == "ready" and "ball" in s["objects"])
+
+    def lines(self):
+        if not self.log.exists():
+            return
+        with self.log.open() as file:
+            file.seek(self.read)
+            for line in iter(file.readline, ""):
+                if not line.endswith("\n"):
+                    return
+                self.read += len(line)
+                yield json.loads(line)
+
+    def wait(self, what, condition):
+        """Waits for a picture that fulfills a condition, and returns what was logged with it."""
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end:
+            for state in self.lines():
+                self.last = state
+                self.gl_errors.add(state["gl_error"])
+                if condition(state):
+                    return state
+            if self.program.poll() is not None:
+                raise AssertionError(f"{what}: the program ended: {self.program.stderr.read()}")
+            time.sleep(0.01)
+        raise AssertionError(f"{what} did not come; the last state was {self.last}")
+
+    def fresh(self):
+        """Waits until everything that was asked for is done and shown, and returns the state then."""
+        number = self.last["picture"] + 2
+        for state in self.lines():
+            self.last = state
+            number = state["picture"] + 2
+        return self.wait("a picture", lambda s: s["picture"] >= number and s["commands"] >= s["posted"])
+
+    def do(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=LIMIT)
+
+    def point(self, pixel):
+        self.do("mousemove", round(pixel[0]), round(pixel[1]))
+        self.fresh()
+
+    def key(self, name):
+        self.do("key", name)
+        return self.fresh()
+
+    def drag(self, start, way, steps=6):
+        """Presses the left button, waits for the hand, moves by a way, and returns the state before release."""
+        self.point(start)
+        self.do("mousedown", 1)
+        held = self.wait("a grip", lambda s: s["held"] or s["commands"] > self.last["commands"])
+        for i in range(1, steps + 1):
+            self.do("mousemove", round(start[0] + way[0] * i / steps), round(start[1] + way[1] * i / steps))
+            self.fresh()
+        return held
+
+    def close(self):
+        self.do("key", "Escape")
+        code = self.program.wait(LIMIT)
+        self.program.stderr.close()
+        return code
+
+
+class View(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        for tool in ("Xvfb", "xdotool"):
+            if shutil.which(tool) is None:
+                print(f"{tool} is not installed")
+                sys.exit(77)
+        cls.server, cls.display = start_display()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.terminate()
+        cls.server.wait()
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        (pathlib.Path(self.folder.name) / "scene.json").write_text(SCENE)
+        self.window = None
+
+    def tearDown(self):
+        if self.window and self.window.program.poll() is None:
+            self.window.program.kill()
+            self.window.program.wait()
+            self.window.program.stderr.close()
+
+    def open(self, *words):
+        self.window = Window(self.folder.name, self.display, *words)
+        return self.window
+
+    def end(self):
+        self.assertEqual(self.window.gl_errors, {0})
+        self.assertEqual(self.window.close(), 0)
+
+    def test_each_kind_is_grabbed_moved_and_thrown(self):
+        window = self.open()
+        for name in ("ball", "flag", "rope", "jelly"):
+            with self.subTest(name):
+                start = window.fresh()["objects"][name]
+                window.drag(start["pixel"], (0, -120))
+                self.assertEqual(window.last["held"], name)
+                up = window.wait("the object follows", lambda s: s["hand"][1] > start["place"][1] + 0.3)
+                self.assertGreater(up["objects"][name]["place"][1], start["place"][1] + 0.1)
+                window.do("mouseup", 1)
+                window.wait("it is let go", lambda s: not s["held"] and s["said"] == f"let go of '{name}'")
+        state = window.fresh()
+        self.assertEqual(state["undo"], 4)
+        self.end()
+
+    def test_a_thrown_ball_flies_on(self):
+        window = self.open()
+        start = window.fresh()["objects"]["ball"]
+        window.drag(start["pixel"], (0, -250), steps=3)
+        window.wait("it is high up", lambda s: s["hand"][1] > 1.2)
+        window.do("mousemove_relative", "--", 260, 0)
+        window.wait("it moves to the right", lambda s: s["hand"][0] > -0.2)
+        window.do("mouseup", 1)
+        free = window.wait("it is let go", lambda s: not s["held"])
+        x = free["objects"]["ball"]["place"][0]
+        window.wait("it flies on", lambda s: s["objects"]["ball"]["place"][0] > x + 0.1)
+        self.end()
+
+    def test_pause_step_rewind_shoot_and_undo(self):
+        window = self.open()
+        window.wait("some steps", lambda s: s["step"] > 30)
+        window.point((640, 100))
+        state = window.key("space")
+        self.assertFalse(state["playing"])
+        step = state["step"]
+        self.assertEqual(window.key("s")["step"], step + 1)
+        self.assertEqual(window.key("Left")["step"], step)
+        ball = state["objects"]["ball"]["pixel"]
+        window.point(ball)
+        shot = window.key("b")
+        self.assertTrue(shot["said"].startswith("shot 'ball_"), shot["said"])
+        self.assertEqual(shot["undo"], 1)
+        window.key("space")
+        hit = window.wait("the ball was hit", lambda s: s["objects"]["ball"]["place"][2] < -0.3)
+        paused = window.key("space")
+        # A drag of the timeline to its start, and back to its end.
+        left, top, right, bottom = paused["timeline"]
+        middle = (top + bottom) / 2
+        window.point((right - 8, middle))
+        window.do("mousedown", 1)
+        window.fresh()
+        window.do("mousemove", round(left + 2), round(middle))
+        early = window.wait("it is rewound", lambda s: s["step"] == 0)
+        self.assertEqual(early["last_step"], paused["last_step"])
+        self.assertAlmostEqual(early["objects"]["ball"]["place"][2], 0, places=6)
+        window.do("mousemove", round(right - 2), round(middle))
+        late = window.wait("it is back", lambda s: s["step"] == paused["last_step"])
+        window.do("mouseup", 1)
+        self.assertEqual(late["objects"]["ball"]["place"], paused["objects"]["ball"]["place"])
+        self.assertGreater(hit["step"], step)
+        undone = window.key("u")
+        self.assertEqual(undone["said"], "undone: shot")
+        self.assertEqual(undone["step"], step)
+        self.assertEqual(set(undone["objects"]), {"ground", "ball", "flag", "rope", "jelly"})
+        self.end()
+
+    def test_a_drag_on_nothing_turns_the_camera_and_keys_are_listed(self):
+        window = self.open("--paused")
+        before = window.fresh()["objects"]
+        window.point((640, 60))
+        window.do("mousedown", 1)
+        window.fresh()
+        window.do("mousemove_relative", "--", 100, 0)
+        turned = window.wait("the camera turns",
+                             lambda s: abs(s["objects"]["jelly"]["pixel"][0] - before["jelly"]["pixel"][0]) > 20)
+        window.do("mouseup", 1)
+        self.assertEqual(turned["objects"]["ball"]["place"], before["ball"]["place"])
+        self.assertTrue(window.key("question")["help"])
+        self.assertFalse(window.key("Escape")["help"])
+        far = window.fresh()["objects"]
+        window.do("click", 4)
+        near = window.wait("the wheel zooms", lambda s: s["objects"] != far)
+        self.assertNotEqual(near["objects"]["ball"]["pixel"], far["ball"]["pixel"])
+        self.end()
+
+    def test_pins_strings_drops_and_removal(self):
+        window = self.open("--paused")
+        objects = window.fresh()["objects"]
+        window.point(objects["ball"]["pixel"])
+        self.assertEqual(window.key("p")["said"], "pinned 'ball'")
+        self.assertEqual(window.key("p")["said"], "unpinned 'ball'")
+        window.key("h")
+        window.point(objects["jelly"]["pixel"])
+        self.assertTrue(window.key("h")["said"].startswith("tied 'ball' to 'jelly'"))
+        self.assertEqual(window.key("Delete")["said"], "removed 'jelly'")
+        self.assertNotIn("jelly", window.fresh()["objects"])
+        window.point((640, 500))
+        self.assertTrue(window.key("d")["said"].startswith("dropped 'ball_"), window.last["said"])
+        self.assertEqual(window.fresh()["undo"], 5)
+        self.end()
+
+
+if __name__ == "__main__":
+    PROGRAM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
