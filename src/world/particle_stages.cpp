@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "solver/check_routes.h"
+#include "solver/coupled/backing.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/pressed_points.h"
 #include "solver/soft/shape_matching.h"
@@ -99,7 +100,7 @@ void solve_passes(Rows& rows, Division division, int grain, state::Particles& pa
 
 /// Solves the rows of solids at once, with what presses on their points and with each other. What does not
 /// stay where it touches is let go, and the solution goes on from there.
-void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing, Real h, Division division,
+void solve_stiff_solids(state::Tables& tables, const solver::Pressing& pressing, Real h, Division division,
                         solver::StiffSystem system) {
   const bool is_one = system.parts.size() == 1;
   const auto pass = [&](auto solve) {
@@ -115,7 +116,7 @@ void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing,
   }
   pass(solver::linearize_tetrahedra);
   solver::prepare_stiff_rows(tables.particles, system);
-  solver::prepare_ties(tables, system);
+  solver::prepare_ties(tables, pressing.backed, system);
   bool is_last = false;
   for (int round = 1;; ++round) {
     solver::solve_for_change(tables.particles, system, pass);
@@ -345,12 +346,39 @@ void rebase_origins(WorldData& world) {
   }
 }
 
+namespace {
+
+/// Lists the bodies that stiff solids press on and hang on, with what backs these.
+void find_backing(WorldData& world, Real h) {
+  world.frame.bodies_at_solids.clear();
+  for (const solver::StiffTie& tie : world.frame.joined_solids.ties) {
+    if (tie.body != solver::StiffTie::kNone) world.frame.bodies_at_solids.push_back(tie.body);
+  }
+  solver::find_backing(world.tables, world.frame.surfaces.stiff, world.frame.carried_forces,
+                       world.frame.bodies_at_solids, h, world.frame.backed);
+}
+
+/// Gives points of stiff solids their velocities, and bodies what these press them with.
+void release_stiff_solids(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  for (solver::SoftGroup& group : world.derived.soft.groups)
+    solver::release_pressed_points(group.tetrahedra, world.frame.backed, tables);
+  solver::spread_impulses(world.frame.backed, tables.bodies);
+  for (solver::SoftGroup& group : world.derived.soft.groups)
+    solver::rest_released_contacts(h, group.tetrahedra, tables);
+}
+
+}  // namespace
+
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  std::vector<int>& pressing = world.frame.pressing_points;
-  if (world.frame.surfaces.any_stiff) solver::count_pressing_points(tables, h, pressing);
+  solver::BackedBodies& backed = world.frame.backed;
+  const solver::Pressing pressing = {.points = world.frame.pressing_points, .backed = backed};
+  const bool any_stiff = world.frame.surfaces.any_stiff;
+  if (any_stiff) solver::count_pressing_points(tables, h, world.frame.pressing_points);
   solver::JoinedSolids& joined = world.frame.joined_solids;
   solver::list_joined_solids(tables, world.frame.surfaces, h, world.derived.soft, joined);
+  if (any_stiff) find_backing(world, h);
   for (const solver::JoinedSolids::System& system : joined.systems)
     solve_stiff_solids(tables, pressing, h, Division{world.pool.get()}, joined.at(system));
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
@@ -363,8 +391,7 @@ void solve_solids(WorldData& world, Real h) {
       solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
     }
   });
-  for (solver::SoftGroup& group : world.derived.soft.groups)
-    solver::release_pressed_points(h, group.tetrahedra, tables);
+  if (any_stiff) release_stiff_solids(world, h);
   for_matched(world, h, solver::match_shape);
   HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
