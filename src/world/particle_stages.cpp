@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "solver/check_routes.h"
+#include "solver/cloth/cloth_rule.h"
 #include "solver/coupled/backing.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/pressed_points.h"
@@ -250,7 +251,11 @@ void refresh_derived(WorldData& world) {
 
 void prepare_particle_rows(WorldData& world, Real h) {
   state::check_tables(world.tables);  // By now all contacts have been found.
-  const auto prepare = [h](solver::SoftGroup& group, Division) { solver::prepare_soft_group(group, h); };
+  const state::Particles& particles = world.tables.particles;
+  const auto prepare = [&particles, h](solver::SoftGroup& group, Division) {
+    solver::prepare_soft_group(group, h);
+    if (group.cloth.is_active) solver::prepare_cloth_grids(particles, h, group.cloth.grids);
+  };
   for_soft_groups(world, prepare);
   if (solver::separate_stiff_solids(world.tables, world.pool->workers(), world.derived.soft))
     for_soft_groups(world, prepare);
@@ -326,6 +331,9 @@ std::uint32_t quarantine_non_finite(WorldData& world) {
     particles.position[i].x = world.frame.start_position[i].x;
     particles.velocity[i].v = {};
     ++count;
+  }
+  for (state::Deformable& object : world.tables.objects) {
+    for (Vec3& change : object.stretch.change) change = is_finite(change) ? change : Vec3{};
   }
   for (Real& tension : world.tables.segments.tension) tension = std::isfinite(tension) ? tension : Real(0);
   return count;
@@ -411,6 +419,21 @@ void move_particles(WorldData& world, Real h) {
       solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra);
     });
   });
+}
+
+void solve_loaded_cloths(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
+    if (!group.cloth.is_active) return;
+    solver::solve_cloth({division.pool}, h, tables.objects[group.first_object], tables.particles,
+                        group.cloth);
+  });
+}
+
+void choose_loaded_cloths(WorldData& world, Real dt) {
+  const WorldDesc& desc = world.tables.desc;
+  const auto substeps = static_cast<Real>(desc.substeps * desc.particle_substeps);
+  solver::choose_stretch_solutions(dt / substeps, dt, world.tables);
 }
 
 void flow_cloths(WorldData& world) {
