@@ -453,11 +453,6 @@ struct ClothDesc {
   ContactDesc contact = {};  ///< Surface of the cloth; only its friction counts.
   /// Whether the cloth touches itself. It needs a thickness of at most half of the mean edge.
   bool self_contact = false;
-  /// Whether its stretch, shear and limits are solved at once while loads make it longer by more than 1 %,
-  /// where it is pinned and has at least 64 points, no hooks, no gas and no body on it. A pinned square of
-  /// 101 x 101 points then stretches by 2 % in place of 2000 %, at 4 times the cost; flags take 2.5 times. A
-  /// heavy load on one point may gain 6 % of energy.
-  bool solve_at_once = false;
   /// Which other cloths and solids it touches; all by default. Bodies are not asked.
   FilterDesc filter = {};
 };

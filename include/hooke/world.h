@@ -149,11 +149,6 @@ struct StepReport {
   std::uint32_t coupled_groups_cut_short = 0;
   /// Groups of stiff solids that used up their passes in some substep: they yield more than they should.
   std::uint32_t solids_unconverged = 0;
-  /// Directions in which solutions of cloths under loads were looked for. One costs about ten passes over the
-  /// cloth's stretch and shear springs.
-  std::uint32_t cloth_directions = 0;
-  /// Cloths under loads that used up their directions in some substep: they stretch more than they should.
-  std::uint32_t cloths_unconverged = 0;
   /// Times that a point of a cloth or a solid was held back for a particle substep, because nothing else kept
   /// surfaces from crossing: they jam there.
   std::uint32_t points_held_back = 0;

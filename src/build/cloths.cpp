@@ -420,7 +420,6 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.gas = filled.gas;
   object.gas_volume = filled.gas_volume;
   object.surface = contact.value();
-  object.stretch.asked = desc.solve_at_once;
   object.friction = desc.contact.friction;
   object.yield_angle = desc.yield_angle;
   object.columns = static_cast<std::uint32_t>(surface.columns);

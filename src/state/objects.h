@@ -74,15 +74,6 @@ struct Surface {
   Real edge = Real(0);           ///< Mean length of an edge at rest [m].
 };
 
-/// How the stretch springs and limits of a cloth are solved (solver/cloth/cloth_solution.h).
-struct Stretch {
-  bool asked = false;             ///< Whether it may be solved at once (ClothDesc::solve_at_once).
-  bool solved = false;            ///< Solved at once, because loads stretch the cloth.
-  Real calm = Real(0);            ///< For how long that has not been needed [s].
-  std::vector<Vec3> change = {};  ///< By row: the change of velocity that the rows made in the last substep
-                                  ///< [m/s]; empty while they are not solved at once.
-};
-
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
@@ -117,7 +108,6 @@ struct Deformable {
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);
-  Stretch stretch = {};      ///< How the stretch springs of a cloth are solved.
   Surface surface = {};      ///< How it touches other deformables and itself.
   bool points_drag = false;  ///< Some particle feels the air by itself: as a sphere, or by air friction.
 

@@ -6,7 +6,6 @@
 #include "solver/body/body_motion.h"
 #include "solver/check_routes.h"
 #include "solver/contact/dense_pile_limit.h"
-#include "solver/coupled/backing.h"
 #include "solver/coupled/coupled_manifolds.h"
 #include "solver/routes.h"
 #include "state/body_frames.h"
@@ -248,8 +247,6 @@ void accelerate_bodies(WorldData& world, double time, Real h, bool first) {
   force_bodies(world, time, h);
   const solver::BodyStep step = {.gravity = world.tables.desc.gravity, .h = h, .first = first};
   for_bodies(world, [&](auto rows) { solver::accelerate_bodies(rows, step, world.tables.bodies); });
-  solver::list_carried_forces(world.tables, world.frame.surfaces.stiff, world.frame.carried_forces);
-  solver::push_carried(world.frame.carried_forces, h, world.tables.bodies);
   freeze_inertia(world, h, false);
 }
 

@@ -2,8 +2,6 @@
 
 #include "base/assert.h"
 #include "solver/check_routes.h"
-#include "solver/cloth/cloth_rule.h"
-#include "solver/coupled/backing.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/pressed_points.h"
 #include "solver/soft/shape_matching.h"
@@ -101,7 +99,7 @@ void solve_passes(Rows& rows, Division division, int grain, state::Particles& pa
 
 /// Solves the rows of solids at once, with what presses on their points and with each other. What does not
 /// stay where it touches is let go, and the solution goes on from there.
-void solve_stiff_solids(state::Tables& tables, const solver::Pressing& pressing, Real h, Division division,
+void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing, Real h, Division division,
                         solver::StiffSystem system) {
   const bool is_one = system.parts.size() == 1;
   const auto pass = [&](auto solve) {
@@ -117,7 +115,7 @@ void solve_stiff_solids(state::Tables& tables, const solver::Pressing& pressing,
   }
   pass(solver::linearize_tetrahedra);
   solver::prepare_stiff_rows(tables.particles, system);
-  solver::prepare_ties(tables, pressing.backed, system);
+  solver::prepare_ties(tables, system);
   bool is_last = false;
   for (int round = 1;; ++round) {
     solver::solve_for_change(tables.particles, system, pass);
@@ -251,11 +249,7 @@ void refresh_derived(WorldData& world) {
 
 void prepare_particle_rows(WorldData& world, Real h) {
   state::check_tables(world.tables);  // By now all contacts have been found.
-  const state::Particles& particles = world.tables.particles;
-  const auto prepare = [&particles, h](solver::SoftGroup& group, Division) {
-    solver::prepare_soft_group(group, h);
-    if (group.cloth.is_active) solver::prepare_cloth_grids(particles, h, group.cloth.grids);
-  };
+  const auto prepare = [h](solver::SoftGroup& group, Division) { solver::prepare_soft_group(group, h); };
   for_soft_groups(world, prepare);
   if (solver::separate_stiff_solids(world.tables, world.pool->workers(), world.derived.soft))
     for_soft_groups(world, prepare);
@@ -332,9 +326,6 @@ std::uint32_t quarantine_non_finite(WorldData& world) {
     particles.velocity[i].v = {};
     ++count;
   }
-  for (state::Deformable& object : world.tables.objects) {
-    for (Vec3& change : object.stretch.change) change = is_finite(change) ? change : Vec3{};
-  }
   for (Real& tension : world.tables.segments.tension) tension = std::isfinite(tension) ? tension : Real(0);
   return count;
 }
@@ -354,39 +345,12 @@ void rebase_origins(WorldData& world) {
   }
 }
 
-namespace {
-
-/// Lists the bodies that stiff solids press on and hang on, with what backs these.
-void find_backing(WorldData& world, Real h) {
-  world.frame.bodies_at_solids.clear();
-  for (const solver::StiffTie& tie : world.frame.joined_solids.ties) {
-    if (tie.body != solver::StiffTie::kNone) world.frame.bodies_at_solids.push_back(tie.body);
-  }
-  solver::find_backing(world.tables, world.frame.surfaces.stiff, world.frame.carried_forces,
-                       world.frame.bodies_at_solids, h, world.frame.backed);
-}
-
-/// Gives points of stiff solids their velocities, and bodies what these press them with.
-void release_stiff_solids(WorldData& world, Real h) {
-  state::Tables& tables = world.tables;
-  for (solver::SoftGroup& group : world.derived.soft.groups)
-    solver::release_pressed_points(group.tetrahedra, world.frame.backed, tables);
-  solver::spread_impulses(world.frame.backed, tables.bodies);
-  for (solver::SoftGroup& group : world.derived.soft.groups)
-    solver::rest_released_contacts(h, group.tetrahedra, tables);
-}
-
-}  // namespace
-
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  solver::BackedBodies& backed = world.frame.backed;
-  const solver::Pressing pressing = {.points = world.frame.pressing_points, .backed = backed};
-  const bool any_stiff = world.frame.surfaces.any_stiff;
-  if (any_stiff) solver::count_pressing_points(tables, h, world.frame.pressing_points);
+  std::vector<int>& pressing = world.frame.pressing_points;
+  if (world.frame.surfaces.any_stiff) solver::count_pressing_points(tables, h, pressing);
   solver::JoinedSolids& joined = world.frame.joined_solids;
   solver::list_joined_solids(tables, world.frame.surfaces, h, world.derived.soft, joined);
-  if (any_stiff) find_backing(world, h);
   for (const solver::JoinedSolids::System& system : joined.systems)
     solve_stiff_solids(tables, pressing, h, Division{world.pool.get()}, joined.at(system));
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
@@ -399,7 +363,8 @@ void solve_solids(WorldData& world, Real h) {
       solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
     }
   });
-  if (any_stiff) release_stiff_solids(world, h);
+  for (solver::SoftGroup& group : world.derived.soft.groups)
+    solver::release_pressed_points(h, group.tetrahedra, tables);
   for_matched(world, h, solver::match_shape);
   HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
@@ -419,21 +384,6 @@ void move_particles(WorldData& world, Real h) {
       solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra);
     });
   });
-}
-
-void solve_loaded_cloths(WorldData& world, Real h) {
-  state::Tables& tables = world.tables;
-  for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
-    if (!group.cloth.is_active) return;
-    solver::solve_cloth({division.pool}, h, tables.objects[group.first_object], tables.particles,
-                        group.cloth);
-  });
-}
-
-void choose_loaded_cloths(WorldData& world, Real dt) {
-  const WorldDesc& desc = world.tables.desc;
-  const auto substeps = static_cast<Real>(desc.substeps * desc.particle_substeps);
-  solver::choose_stretch_solutions(dt / substeps, dt, world.tables);
 }
 
 void flow_cloths(WorldData& world) {

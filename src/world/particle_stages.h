@@ -27,13 +27,6 @@ void begin_particle_substep(WorldData& world, Real h);
 void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last);
 void solve_bends(WorldData& world);
 
-/// Solves the stretch springs and limits of cloths that loads stretch, in a particle substep of length `h`
-/// [s].
-void solve_loaded_cloths(WorldData& world, Real h);
-
-/// Decides after a step of `dt` [s] which cloths are solved so in the next one.
-void choose_loaded_cloths(WorldData& world, Real dt);
-
 /// Starts a particle substep of length `h` [s] for ropes and coupled groups. Twisted ropes turn bodies, hooks
 /// slide along ropes, and coupled groups are built. Their bodies get gravity and contact impulses in shares,
 /// and mass shares begin. `first` marks the first particle substep of a substep.

@@ -89,7 +89,6 @@ void add_objects(StateHash& hash, const Tables& t) {
     for (const state::Rows& rows : {o.particles, o.springs, o.bends, o.triangles, o.segments, o.tetrahedra})
       add_rows(hash, rows);
     add_rest_form(hash, o);
-    if (o.stretch.solved) add(hash, o.stretch.calm, o.stretch.change);
     add_surface(hash, o);
   }
   add_columns(hash, t.particles);

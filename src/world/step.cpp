@@ -60,7 +60,6 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::solve_bends(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
-  world::solve_loaded_cloths(w, h);
   world::solve_ropes(w, h, first_of_step);
   world::solve_point_contacts(w, h);
   world::move_particles(w, h);
@@ -98,7 +97,6 @@ void finish(WorldData& w, double dt, StepReport& report) {
   world::gather_events(w);
   report.rows_quarantined += world::quarantine_non_finite(w);
   world::flow_cloths(w);
-  world::choose_loaded_cloths(w, static_cast<Real>(dt));
   world::rebase_origins(w);
   world::end_step(w, dt, report);
 }

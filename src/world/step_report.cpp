@@ -22,11 +22,8 @@ void count_refused(WorldData& world, StepReport& report) {
     report.surfaces_touching += group.counts.uncertain;
     report.surface_searches += group.counts.searches;
   });
-  for (solver::SoftGroup& group : world.derived.soft.groups) {
-    report.cloth_directions += std::exchange(group.cloth.directions, 0U);
-    report.cloths_unconverged += std::exchange(group.cloth.unconverged, false) ? 1 : 0;
+  for (solver::SoftGroup& group : world.derived.soft.groups)
     report.solids_unconverged += std::exchange(group.tetrahedra.stiff.unconverged, false) ? 1 : 0;
-  }
 }
 
 void count_rows(WorldData& world, StepReport& report) {

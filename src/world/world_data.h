@@ -24,7 +24,6 @@
 #include "solver/rope/rope_twist.h"
 #include "solver/soft/gas_pressure.h"
 #include "solver/soft/soft_groups.h"
-#include "solver/solid/backed_bodies.h"
 #include "solver/surface/joined_solids.h"
 #include "solver/surface/surface_groups.h"
 #include "state/sleeping_pairs.h"
@@ -150,10 +149,6 @@ struct Frame {
   collision::RopeContactFinder rope_contacts;
   solver::SurfaceContacts surfaces;    ///< Contacts of deformables with each other.
   solver::JoinedSolids joined_solids;  ///< Stiff solids that are solved together.
-  solver::BackedBodies backed;         ///< Bodies that touch stiff solids; valid while these are solved.
-  std::vector<solver::CarriedForce>
-      carried_forces;                           ///< What solids pressed bodies with; valid for a substep.
-  std::vector<std::uint32_t> bodies_at_solids;  ///< Bodies that hooks hold at stiff solids.
   solver::Repulsion repulsion;
   std::vector<state::VelocityRecord> velocity_before;  ///< Velocities of rope nodes before forces act.
   std::vector<solver::AirRecord> wind;                 ///< Velocity of the air at each particle [m/s].

@@ -80,9 +80,8 @@ Net hinge(double angle, Real stiffness) {
 
 void solve(Net& net) {
   IsometricBendBlocks blocks;
-  std::vector<std::uint8_t> taken(static_cast<std::size_t>(net.springs.count()), 0);
   build_isometric_bend_blocks(owner_of_all(net.particles, net.springs, net.bends), net.bends, net.springs,
-                              taken, blocks);
+                              blocks);
   prepare_isometric_bends(blocks, kSubstep);
   for (const IsometricBendPass& pass : blocks.passes)
     solve_isometric_bends(blocks, pass, {pass.first, pass.end}, net.particles);
@@ -192,8 +191,8 @@ TEST_SUITE("solver/isometric_bending") {
     const Net net = random_net(400, 777);
     const auto objects = owner_of_all(net.particles, net.springs, net.bends);
     IsometricBendBlocks isometric_bends;
-    std::vector<std::uint8_t> taken(static_cast<std::size_t>(net.springs.count()), 0);
-    build_isometric_bend_blocks(objects, net.bends, net.springs, taken, isometric_bends);
+    const std::vector<std::uint8_t> taken =
+        build_isometric_bend_blocks(objects, net.bends, net.springs, isometric_bends);
     CHECK(count_rows_apart(isometric_bends, 400) == 777);
     int springs = 0;
     for (const IsometricBendPass& pass : isometric_bends.passes) {

@@ -113,7 +113,6 @@ void carry_forces(const state::Contacts& from, state::Contacts& to) {
     while (old < from.particle.size() && key_of(from, old) < key) ++old;
     if (old == from.particle.size()) return;
     if (key_of(from, old) != key) continue;
-    to.normal[row] = from.normal[old];
     to.normal_force[row] = from.normal_force[old];
     to.friction_force[row] = from.friction_force[old];
   }

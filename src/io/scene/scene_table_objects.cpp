@@ -231,9 +231,6 @@ std::vector<Field> cloth_rows() {
       field<kDesc, &ClothDesc::thickness>("thickness", "m", kPositive,
                                           "Points keep half of it from what they touch."),
       field<kDesc, &ClothDesc::self_contact>("self_contact", "", kAny, "Whether it touches itself."),
-      field<kDesc, &ClothDesc::solve_at_once>(
-          "solve_at_once", "", kAny,
-          "Whether stretch is solved at once where loads make a pinned cloth longer by more than 1 %."),
       field<kDesc, &ClothDesc::filter, &FilterDesc::category>(
           "category", "", kAny, "Bits of its categories, for contact with other deformables."),
       field<kDesc, &ClothDesc::filter, &FilterDesc::mask>(

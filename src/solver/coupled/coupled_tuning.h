@@ -125,14 +125,6 @@ inline constexpr Real kSunkShare = Real(0.025);
 /// is recorded.
 inline constexpr Real kLoadTouchingGap = Real(1e-3);
 
-/// Speed up to which friction holds a contact that backs what touches a stiff solid [m/s]. Chosen by hand; no
-/// measurement is recorded.
-inline constexpr Real kBackingSticks = Real(0.05);
-
-/// Compliance of rows that back what touches a stiff solid, as a share of how what they join yields [ratio].
-/// Smaller: points that share a load share it by rounding.
-inline constexpr double kBackingCompliance = 1e-6;
-
 /// Least cosine between the normal and gravity with which a body lies on another one, and does not lean on
 /// its side [ratio]. Chosen by hand; no measurement is recorded.
 inline constexpr Real kLiesOnCosine = Real(0.3);

@@ -167,13 +167,14 @@ void sort_isometric_bends(const state::Bends& bends, std::size_t materials,
 
 }  // namespace
 
-void build_isometric_bend_blocks(std::span<const state::Deformable> objects, const state::Bends& bends,
-                                 const state::Springs& springs, std::vector<std::uint8_t>& taken,
-                                 IsometricBendBlocks& isometric_bends) {
-  HOOKE_ASSERT(taken.size() == rows_of(objects, &state::Deformable::springs).count);
+std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Deformable> objects,
+                                                      const state::Bends& bends,
+                                                      const state::Springs& springs,
+                                                      IsometricBendBlocks& isometric_bends) {
   isometric_bends = {};
   isometric_bends.first_particle = rows_of(objects, &state::Deformable::particles).first;
   isometric_bends.materials.push_back({});  // kNoSpring
+  std::vector<std::uint8_t> taken(rows_of(objects, &state::Deformable::springs).count, 0);
   std::vector<IsometricBend> list = list_isometric_bends(objects, bends, springs, taken, isometric_bends);
   sort_isometric_bends(bends, isometric_bends.materials.size(), list);
 
@@ -199,6 +200,7 @@ void build_isometric_bend_blocks(std::span<const state::Deformable> objects, con
     pass.end = static_cast<int>(isometric_bends.blocks.size());
     isometric_bends.passes.push_back(pass);
   }
+  return taken;
 }
 
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {

@@ -62,11 +62,12 @@ struct IsometricBendBlocks {
 };
 
 /// Makes elements of the isometric bends of these objects and of the springs that lie along their edges or
-/// between their wings. `taken` marks springs, by row from the objects' first one on, that are solved
-/// elsewhere; those that come into an element are marked, too.
-void build_isometric_bend_blocks(std::span<const state::Deformable> objects, const state::Bends& bends,
-                                 const state::Springs& springs, std::vector<std::uint8_t>& taken,
-                                 IsometricBendBlocks& isometric_bends);
+/// between their wings. Returns, by row of the objects' springs from their first one on, whether the spring
+/// is in an element.
+std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Deformable> objects,
+                                                      const state::Bends& bends,
+                                                      const state::Springs& springs,
+                                                      IsometricBendBlocks& isometric_bends);
 
 /// Sets the coefficients of every row for a substep of `h` [s].
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h);

@@ -257,13 +257,14 @@ double share_of_body(const state::Tables& t, std::uint32_t body, const std::vect
 }
 
 /// Lists the bodies that hold points, with their shares of mass, and finds the one that moves each point.
-void list_holders(const state::Tables& t, const Pressing& pressing, Real h, TetrahedronBlocks& tetrahedra) {
+void list_holders(const state::Tables& t, const std::vector<int>& shares, Real h,
+                  TetrahedronBlocks& tetrahedra) {
   std::vector<HoldingBody>& holders = tetrahedra.stiff.holders;
   for (const PressedPoint& point : tetrahedra.pressed) {
     if (point.holder == PressedPoint::kNone || tetrahedra.stiff.find_holder(point.holder) != nullptr)
       continue;
-    const double share = share_of_body(t, point.holder, pressing.points, h, tetrahedra.pressed);
-    holders.push_back(backed_holder(pressing.backed, point.holder, share));
+    holders.push_back(
+        holding_body(t.bodies, point.holder, share_of_body(t, point.holder, shares, h, tetrahedra.pressed)));
   }
   for (PressedPoint& point : tetrahedra.pressed) {
     const HoldingBody* holder = tetrahedra.stiff.find_holder(point.holder);
@@ -283,7 +284,7 @@ DVec3 mean_start(const TetrahedronBlocks& tetrahedra, std::size_t first, std::si
     if (holder == nullptr) continue;
     of_all += point.start;
     ++count;
-    if (holder->moves && !holder->is_held) continue;
+    if (holder->moves) continue;
     of_ground += point.start;
     ++on_ground;
   }
@@ -312,8 +313,7 @@ void guess_changes(const state::Tables& t, TetrahedronBlocks& tetrahedra) {
     }
     for (std::size_t k = first; k < i; ++k) {
       HoldingBody* holder = tetrahedra.stiff.find_holder(tetrahedra.pressed[k].holder);
-      if (holder != nullptr && holder->moves && !holder->is_held)
-        holder->change = {mean.x, mean.y, mean.z, 0, 0, 0};
+      if (holder != nullptr && holder->moves) holder->change = {mean.x, mean.y, mean.z, 0, 0, 0};
     }
   }
 }
@@ -326,7 +326,7 @@ void count_pressing_points(const state::Tables& t, Real h, std::vector<int>& sha
     shares[t.contacts.body[row]] += presses(t, row, h);
 }
 
-void note_pressed_points(const state::Tables& t, const Pressing& pressing, Real h,
+void note_pressed_points(const state::Tables& t, const std::vector<int>& shares, Real h,
                          TetrahedronBlocks& tetrahedra) {
   HOOKE_ASSERT(tetrahedra.pressed.empty());
   const state::Contacts& contacts = t.contacts;
@@ -342,16 +342,16 @@ void note_pressed_points(const state::Tables& t, const Pressing& pressing, Real 
     if (!(inverse_mass > Real(0)) || !(tetrahedra.volume_at[particle - first] > Real(0))) continue;
     PressedPoint point = {.particle = particle, .contact = first_row, .inverse_mass = inverse_mass};
     hold_at_first(t, h, point);
-    find_answer(t, pressing.points, h, point);
+    find_answer(t, shares, h, point);
     tetrahedra.pressed.push_back(point);
     tetrahedra.pressed_of[particle - first] = static_cast<std::uint32_t>(tetrahedra.pressed.size());
   }
   tetrahedra.stiff.holders.clear();
-  list_holders(t, pressing, h, tetrahedra);
+  list_holders(t, shares, h, tetrahedra);
   guess_changes(t, tetrahedra);
 }
 
-bool renew_pressed_points(const Pressing& pressing, const state::Tables& t, Real h, bool may_hold,
+bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& t, Real h, bool may_hold,
                           TetrahedronBlocks& tetrahedra) {
   bool any = false;
   for (PressedPoint& point : tetrahedra.pressed) {
@@ -366,27 +366,24 @@ bool renew_pressed_points(const Pressing& pressing, const state::Tables& t, Real
       point.drag = drag;
       continue;
     }
-    find_answer(t, pressing.points, h, point);
+    find_answer(t, shares, h, point);
     any = true;
   }
-  list_holders(t, pressing, h, tetrahedra);
+  list_holders(t, shares, h, tetrahedra);
   return any;
 }
 
-void release_pressed_points(TetrahedronBlocks& tetrahedra, BackedBodies& backed, state::Tables& t) {
+void release_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& t) {
+  const Real most = Real(kParticlePushOutSpeed) * h;
   for (PressedPoint& point : tetrahedra.pressed) {
     Vec3& v = t.particles.velocity[point.particle].v;
     v += vector_cast<Real>(point.change);
     for_shares(t.contacts, point, contact_impulse(point), [&](std::size_t row, DVec3 impulse) {
-      BackedBody* body = backed.find(t.contacts.body[row]);
-      if (body != nullptr) add_impulse(-impulse, vector_cast<double>(t.contacts.lever[row]), body->impulse);
+      if (!gives_way(t.bodies, t.contacts.body[row])) return;
+      push_body(t.contacts.body[row], vector_cast<Real>(-impulse), t.contacts.lever[row], t.bodies);
     });
     tetrahedra.pressed_of[point.particle - tetrahedra.first_particle] = 0;
   }
-}
-
-void rest_released_contacts(Real h, const TetrahedronBlocks& tetrahedra, state::Tables& t) {
-  const Real most = Real(kParticlePushOutSpeed) * h;
   for (const PressedPoint& point : tetrahedra.pressed) {
     const Real deepest = -static_cast<Real>(point.yielding) * most;
     const Vec3 v = t.particles.velocity[point.particle].v;

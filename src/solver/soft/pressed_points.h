@@ -2,19 +2,12 @@
 
 #include "hooke/math.h"
 
-#include "solver/solid/backed_bodies.h"
 #include "solver/solid/tetrahedron_blocks.h"
 #include "state/tables.h"
 
 #include <vector>
 
 namespace hooke::solver {
-
-/// What presses on stiff solids.
-struct Pressing {
-  const std::vector<int>& points;  ///< How many points each body presses on, by its row.
-  const BackedBodies& backed;
-};
 
 /// Counts the points of deformables that press on each body, or are about to in a substep of `h` [s], by row
 /// of the body.
@@ -24,21 +17,19 @@ void count_pressing_points(const state::Tables& tables, Real h, std::vector<int>
 /// what contacts do to each object as a whole, with which the solution begins. Otherwise stress would push
 /// points as if they were free, and reach a heavy body only as what stops a light point: a jelly under 45
 /// times its mass gained more than twice the energy of the fall. Call it after begin_stiff_solution.
-void note_pressed_points(const state::Tables& tables, const Pressing& pressing, Real h,
+void note_pressed_points(const state::Tables& tables, const std::vector<int>& shares, Real h,
                          TetrahedronBlocks& tetrahedra);
 
 /// Lets go points that do not stay where they touch, and finds friction where they slide. Takes hold of those
 /// that would pass if `may_hold`; otherwise it comes to an end. Returns whether any point changed.
-[[nodiscard]] bool renew_pressed_points(const Pressing& pressing, const state::Tables& tables, Real h,
+[[nodiscard]] bool renew_pressed_points(const std::vector<int>& shares, const state::Tables& tables, Real h,
                                         bool may_hold, TetrahedronBlocks& tetrahedra);
 
-/// Gives each point that was noted the velocity of the solution, and notes the impulses with which bodies
-/// hold it (solver/coupled/backing.h passes them on). Call it for one group after the other.
-void release_pressed_points(TetrahedronBlocks& tetrahedra, BackedBodies& backed, state::Tables& tables);
-
-/// Takes contacts that the solution let go out of this substep, when bodies have got their impulses. Overlaps
-/// count as at most what stress lets leave at once: a move of one point strains what is stiff.
-void rest_released_contacts(Real h, const TetrahedronBlocks& tetrahedra, state::Tables& tables);
+/// Gives each point that was noted the velocity of the solution, and bodies the impulses with which they hold
+/// it. Contacts that the solution let go do not act in this substep. Overlaps count as at most what stress
+/// lets leave at once: a move of one point strains what is stiff. It changes bodies: call it for one group
+/// after the other.
+void release_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables& tables);
 
 /// Adds the impulses of the solution to the forces of contacts, gives points that a body holds the velocity
 /// of its surface, which others may have pushed since, and forgets them. Momentum stays. Call it after

@@ -20,7 +20,6 @@ void place(std::span<const Deformable> objects, std::uint32_t first_object, Soft
   const Deformable& first = objects[first_object];
   group.first_object = first_object;
   group.springs.first_particle = first.particles.first;
-  group.cloth.grids.first_particle = first.particles.first;
   group.bends.first_particle = first.particles.first;
   group.bends.first_row = first.bends.first;
   group.isometric_bends.first_particle = first.particles.first;
@@ -28,17 +27,6 @@ void place(std::span<const Deformable> objects, std::uint32_t first_object, Soft
   group.tetrahedra.first_row = first.tetrahedra.first;
   group.air_loads.first_particle = first.particles.first;
   group.air_loads.first_triangle = first.triangles.first;
-}
-
-/// Marks the springs that the solution of a cloth has: all but those that bend and tethers.
-void take_rows_of_cloth(const Deformable& object, const state::Springs& springs,
-                        std::vector<std::uint8_t>& taken) {
-  for (std::uint32_t row = object.springs.first; row < object.springs.end(); ++row) {
-    const state::SpringClass kind = springs.kind[row];
-    if (kind == state::SpringClass::kStretch || kind == state::SpringClass::kShear ||
-        kind == state::SpringClass::kLimit)
-      taken[row - object.springs.first] = 1;
-  }
 }
 
 /// Goes through the objects in order and finds for each either a group from before or the objects with which
@@ -108,7 +96,7 @@ class Refresh {
 
   void keep(std::size_t object, SoftGroup& group) {
     const std::size_t end = object + group.revisions.size();
-    if (is_pending() && !is_stiff(object) && !group.cloth.is_active &&
+    if (is_pending() && !is_stiff(object) &&
         takes_in(size_between(first_, end_), group.size, size_between(first_, end))) {
       end_ = end;
       return;
@@ -119,25 +107,19 @@ class Refresh {
   }
 
   void copy_anew(std::size_t object) {
-    if (objects_[object].stretch.solved || is_stiff(object)) return copy_alone(object);
-    if (is_pending() && size_between(first_, object + 1) > kMostRowsOfSharedGroup) build_pending();
+    const bool alone = is_stiff(object);
+    if (is_pending() && (alone || size_between(first_, object + 1) > kMostRowsOfSharedGroup)) build_pending();
     if (!is_pending()) first_ = object;
     end_ = object + 1;
+    if (alone) return build_pending();
     while (!out_.groups.empty()) {
       const SoftGroup& last = out_.groups.back();
-      if (last.cloth.is_active || is_stiff(last.first_object)) break;
-      if (!takes_in(size_between(first_, end_), last.size, size_between(last.first_object, end_))) break;
+      if (is_stiff(last.first_object) ||
+          !takes_in(size_between(first_, end_), last.size, size_between(last.first_object, end_)))
+        break;
       first_ = last.first_object;
       out_.groups.pop_back();
     }
-  }
-
-  /// A cloth whose stretch springs are solved at once has a group of its own.
-  void copy_alone(std::size_t object) {
-    build_pending();
-    first_ = object;
-    end_ = object + 1;
-    build_pending();
   }
 
   [[nodiscard]] bool is_pending() const { return first_ < end_; }
@@ -148,12 +130,8 @@ class Refresh {
     SoftGroup& group = out_.groups.emplace_back();
     for (const Deformable& object : objects) group.revisions.push_back(object.revision);
     group.size = size_between(first_, end_);
-    std::vector<std::uint8_t> taken(rows_of(objects, &Deformable::springs).count, 0);
-    if (objects.front().stretch.solved) {
-      build_cloth_solution(objects.front(), tables_.springs, tables_.particles, group.cloth);
-      take_rows_of_cloth(objects.front(), tables_.springs, taken);
-    }
-    build_isometric_bend_blocks(objects, tables_.bends, tables_.springs, taken, group.isometric_bends);
+    const std::vector<std::uint8_t> taken =
+        build_isometric_bend_blocks(objects, tables_.bends, tables_.springs, group.isometric_bends);
     build_spring_blocks(objects, tables_.springs, tables_.particles, taken, group.springs);
     build_bend_blocks(objects, tables_.bends, group.bends);
     build_tetrahedra(objects, tables_.tetrahedra, tables_.particles, group.tetrahedra);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "solver/air/air.h"
-#include "solver/cloth/cloth_solution.h"
 #include "solver/soft/bending.h"
 #include "solver/soft/isometric_bending.h"
 #include "solver/soft/plastic_flow.h"
@@ -36,8 +35,7 @@ struct SoftGroup {
   BendBlocks bends;
   IsometricBendBlocks isometric_bends;
   TetrahedronBlocks tetrahedra;
-  ClothSolution cloth;  ///< Of a cloth whose stretch springs are solved at once; it has a group of its own.
-  Yields yields;        ///< Bends and tetrahedra that may yield.
+  Yields yields;  ///< Bends and tetrahedra that may yield.
   AirLoads air_loads;
 
   [[nodiscard]] std::size_t end_object() const { return first_object + revisions.size(); }

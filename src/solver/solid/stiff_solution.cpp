@@ -1,7 +1,6 @@
 #include "solver/solid/stiff_solution.h"
 
 #include "base/assert.h"
-#include "solver/linear/dense_six.h"
 #include "solver/solid/solid_tuning.h"
 
 #include <algorithm>
@@ -28,10 +27,43 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
 }
+double product(const Six& a, const Six& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
 Six product(const std::array<Six, 6>& m, const Six& v) {
   Six result = {};
-  for (std::size_t i = 0; i < 6; ++i) result[i] = product_six(m[i], v);
+  for (std::size_t i = 0; i < 6; ++i) result[i] = product(m[i], v);
   return result;
+}
+
+/// Factors L D L^T in place: L below the diagonal, 1 / D on it. What nearly nothing resists stays at rest.
+void factorize(std::array<Six, 6>& m) {
+  constexpr double kLeastPivot = 1e-12;
+  Six d = {};
+  for (std::size_t j = 0; j < 6; ++j) {
+    const double whole = m[j][j];
+    d[j] = whole;
+    for (std::size_t k = 0; k < j; ++k) d[j] -= m[j][k] * m[j][k] * d[k];
+    const double inverse = d[j] > kLeastPivot * whole ? 1 / d[j] : 0;
+    for (std::size_t i = j + 1; i < 6; ++i) {
+      for (std::size_t k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k] * d[k];
+      m[i][j] *= inverse;
+    }
+    m[j][j] = inverse;
+  }
+}
+
+Six solved(const std::array<Six, 6>& factor, Six x) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < i; ++k) x[i] -= factor[i][k] * x[k];
+  }
+  for (std::size_t i = 6; i-- > 0;) {
+    x[i] *= factor[i][i];
+    for (std::size_t k = i + 1; k < 6; ++k) x[i] -= factor[k][i] * x[k];
+  }
+  return x;
 }
 
 /// The part of the diagonal that rows of stress and of contact give.
@@ -85,7 +117,7 @@ void take_masses(TetrahedronBlocks& tetrahedra, const state::Particles& particle
     for (std::size_t i = 0; i < 6; ++i) {
       for (std::size_t k = 0; k < 6; ++k) body.factor[i][k] += body.tied[i][k];
     }
-    factorize_six(body.own_factor);
+    factorize(body.own_factor);
   }
   for (std::size_t i = 0; i < stiff.mass.size(); ++i) {
     stiff.mass[i] = {};
@@ -104,7 +136,7 @@ void take_masses(TetrahedronBlocks& tetrahedra, const state::Particles& particle
     if (HoldingBody* mover = mover_of(stiff, *point))
       add_mass(sandwich(point->follows, resisting), point->lever, mover->factor);
   }
-  for (HoldingBody& body : stiff.holders) factorize_six(body.factor);
+  for (HoldingBody& body : stiff.holders) factorize(body.factor);
 }
 
 /// Finds what the residual asks for by itself, in the place of `image` and `wanted`, and its size.
@@ -124,9 +156,9 @@ double precondition(TetrahedronBlocks& tetrahedra) {
   }
   for (HoldingBody& body : stiff.holders) {
     const Six lacks = body.moves ? body.wanted : Six{};
-    body.error = product_six(lacks, solved_six(body.own_factor, lacks));
-    body.wanted = solved_six(body.factor, lacks);
-    size += product_six(body.wanted, body.residual);
+    body.error = product(lacks, solved(body.own_factor, lacks));
+    body.wanted = solved(body.factor, lacks);
+    size += product(body.wanted, body.residual);
   }
   for (const PressedPoint& point : tetrahedra.pressed) {
     const HoldingBody* mover = mover_of(stiff, point);
@@ -150,8 +182,8 @@ double add_masses(TetrahedronBlocks& tetrahedra) {
     set(at(stiff.image, i) + stiff.mass[i] * at(stiff.direction, i), i, stiff.image);
   double curvature = product(stiff.direction, stiff.image);
   for (const HoldingBody& body : stiff.holders) {
-    curvature += product_six(body.direction, product(body.mass, body.direction)) +
-                 product_six(body.direction, body.image);
+    curvature +=
+        product(body.direction, product(body.mass, body.direction)) + product(body.direction, body.image);
   }
   for (const PressedPoint& point : tetrahedra.pressed) {
     const DVec3 slip = slip_along(tetrahedra, point);
@@ -202,7 +234,7 @@ void find_residual(TetrahedronBlocks& tetrahedra) {
   }
   for (HoldingBody& body : stiff.holders) {
     body.residual = product(body.mass, body.change);
-    for (std::size_t k = 0; k < 6; ++k) body.residual[k] = body.given[k] - (body.residual[k] + body.image[k]);
+    for (std::size_t k = 0; k < 6; ++k) body.residual[k] = -(body.residual[k] + body.image[k]);
   }
 }
 
@@ -249,8 +281,7 @@ bool lacks_impulse(double error, double lacking, double changing) {
 bool lacks_motion(double error, const TetrahedronBlocks& tetrahedra) {
   const StiffSolution& stiff = tetrahedra.stiff;
   for (const HoldingBody& body : stiff.holders) {
-    if (lacks_impulse(error, body.error, product_six(body.change, product(body.mass, body.change))))
-      return true;
+    if (lacks_impulse(error, body.error, product(body.change, product(body.mass, body.change)))) return true;
   }
   if (stiff.is_anchored) return false;
   DVec3 lacking;

@@ -44,15 +44,15 @@ DVec3 impulse_of(const StiffSystem& system, const StiffTie& tie) {
 
 }  // namespace
 
-HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body) {
+HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body, double share) {
   HoldingBody holder = {.body = body, .moves = state::gives_way(bodies, body)};
   if (!holder.moves) return holder;
-  const double mass = 1 / static_cast<double>(bodies.motion[body].inverse_mass);
+  const double mass = share / static_cast<double>(bodies.motion[body].inverse_mass);
   const Symmetric3<double> root = math::inverse(math::in_double(bodies.scale[body]));
   for (std::size_t k = 0; k < 3; ++k) {
     holder.mass[k][k] = mass;
     const DVec3 axis = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
-    const DVec3 inertia = root * (root * axis);
+    const DVec3 inertia = share * (root * (root * axis));
     holder.mass[3][3 + k] = inertia.x;
     holder.mass[4][3 + k] = inertia.y;
     holder.mass[5][3 + k] = inertia.z;
@@ -60,19 +60,7 @@ HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body) {
   return holder;
 }
 
-HoldingBody backed_holder(const BackedBodies& backed, std::uint32_t body, double share) {
-  const BackedBody* found = backed.find(body);
-  HoldingBody holder = {.body = body, .moves = found != nullptr};
-  if (found == nullptr) return holder;
-  holder.is_held = found->is_held;
-  for (std::size_t i = 0; i < 6; ++i) {
-    holder.given[i] = -share * found->expected[i];
-    for (std::size_t k = 0; k < 6; ++k) holder.mass[i][k] = share * found->mass[i][k];
-  }
-  return holder;
-}
-
-void prepare_ties(const state::Tables& t, const BackedBodies& backed, const StiffSystem& system) {
+void prepare_ties(const state::Tables& t, const StiffSystem& system) {
   for (StiffTie& tie : system.ties) {
     tie.stiffness = kStiffRowShare * tie.points.resisting_mass(
                                          t.particles, system.parts, [](const Symmetric3<double>& stress) {
@@ -83,7 +71,7 @@ void prepare_ties(const state::Tables& t, const BackedBodies& backed, const Stif
     if (tie.body == StiffTie::kNone) continue;
     StiffSolution& stiff = solution_of(system, tie);
     if (stiff.find_holder(tie.body) == nullptr)
-      stiff.holders.push_back(backed_holder(backed, tie.body, tie.share));
+      stiff.holders.push_back(holding_body(t.bodies, tie.body, tie.share));
     const HoldingBody* holder = stiff.find_holder(tie.body);
     if (holder->moves) tie.mover = static_cast<std::uint32_t>(holder - stiff.holders.data());
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "solver/solid/backed_bodies.h"
 #include "solver/solid/weighted_points.h"
 #include "state/hooks.h"
 #include "state/tables.h"
@@ -39,7 +38,7 @@ struct StiffTie {
 
 /// Lets bodies that hooks hold be unknowns of the solution, and chooses how stiff each hook is in it. Call it
 /// after rows of stress have been linearized and pressed points noted.
-void prepare_ties(const state::Tables& tables, const BackedBodies& backed, const StiffSystem& system);
+void prepare_ties(const state::Tables& tables, const StiffSystem& system);
 
 /// Adds what hooks add to the diagonals of their points.
 void add_tie_diagonals(const StiffSystem& system);
@@ -56,10 +55,7 @@ void resist_ties(const StiffSystem& system);
 /// Takes the impulses of hooks back, so that hooks find them again when they are solved.
 void release_ties(const StiffSystem& system, state::Particles& particles);
 
-/// A body by itself.
-[[nodiscard]] HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body);
-
-/// A body with a share of its mass and of what backs it.
-[[nodiscard]] HoldingBody backed_holder(const BackedBodies& backed, std::uint32_t body, double share);
+/// A body with a share of its mass.
+[[nodiscard]] HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body, double share);
 
 }  // namespace hooke::solver

@@ -105,9 +105,7 @@ struct HoldingBody {
   using Six = std::array<double, 6>;
 
   std::uint32_t body = 0;
-  bool moves = false;    ///< Whether it gives way.
-  bool is_held = false;  ///< Whether something that does not give way backs it.
-  Six given = {};        ///< Impulse from elsewhere: it loses what it was expected to get from solids.
+  bool moves = false;              ///< Whether it gives way.
   std::array<Six, 6> mass = {};    ///< [kg, kg m, kg m^2]
   std::array<Six, 6> factor = {};  ///< L D L^T of mass and diagonal; what is not positive counts as infinite.
   std::array<Six, 6> own_factor = {};  ///< The same of mass alone.
