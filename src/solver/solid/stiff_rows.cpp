@@ -26,10 +26,11 @@ void prepare_stiff_rows(const state::Particles& particles, const StiffSystem& sy
         [&](const Symmetric3<double>& stress) { return dot(row.normal, stress * row.normal); });
     row.stiffness = kStiffRowShare * mass;
     // Overlaps leave slowly where stress resists them: moving a point strains what is stiff.
-    if (row.least_speed > 0 && mass > 0)
+    if (row.least_speed > 0 && mass > 0) {
       row.least_speed *= row.corners.resisting_mass(particles, system.parts, [](const Symmetric3<double>&) {
         return 0.0;
       }) / mass;
+    }
     const double lacks = row.least_speed - dot(row.normal, row.before);
     row.pushes = row.stiffness > 0 && lacks > 0;
     row.let_go = false;
