@@ -1,6 +1,7 @@
 #include "geometry/bsp/bsp_shells.h"
 
 #include "base/disjoint_sets.h"
+#include "geometry/line_triangle.h"
 #include "geometry/mesh/bvh.h"
 
 #include <algorithm>
@@ -57,19 +58,15 @@ Bvh boxes_of(const BspSpace& space, std::span<const BspPiece> pieces) {
   return build_bvh(positions, triangles);
 }
 
-/// 1 where the ray leaves through the triangle, -1 where it enters, 0 where it misses. The three volumes have
-/// opposite signs on both sides of an edge: a line through it passes one of the two triangles.
+/// 1 where the ray leaves through the triangle, -1 where it enters, 0 where it misses. A line through an edge
+/// passes one of the two triangles.
 int passes(const std::array<DVec3, 3>& corners, DVec3 origin, DVec3 direction) {
-  const DVec3 a = corners[0] - origin;
-  const DVec3 b = corners[1] - origin;
-  const DVec3 c = corners[2] - origin;
-  const double of_a = dot(direction, cross(b, c));
-  const double of_b = dot(direction, cross(c, a));
-  const double of_c = dot(direction, cross(a, b));
+  const auto [of_a, of_b, of_c] = line_volumes(origin, direction, corners);
   const bool is_leaving = of_a >= 0 && of_b >= 0 && of_c >= 0;
   const bool is_entering = of_a < 0 && of_b < 0 && of_c < 0;
   if (is_leaving == is_entering) return 0;
-  const DVec3 normal = cross(b - a, c - a);
+  const DVec3 a = corners[0] - origin;
+  const DVec3 normal = cross(corners[1] - origin - a, corners[2] - origin - a);
   const double ahead = dot(normal, a);  // times dot(normal, direction): the sign of the distance along the
                                         // ray
   return is_leaving ? (ahead > 0 ? 1 : 0) : (ahead < 0 ? -1 : 0);
