@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hooke::build {
 
@@ -296,15 +297,27 @@ void append_triangles(const Surface& s, double areal_density, state::Tables& tab
   }
 }
 
-void append_tethers(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
-  if (!desc.tethers) return;
+/// How much longer than the rest distance tethers are, as a share of it; nothing for cloth without tethers.
+/// `mass` and `area` are those of the whole cloth.
+std::optional<Real> slack_of_tethers(const ClothDesc& desc, double mass, double area) {
+  constexpr double kGravity = 9.81;
+  constexpr double kMostOwnStretch = 1e-3;
+  if (desc.tethers) return *desc.tethers ? std::optional<Real>(Real(0)) : std::nullopt;
+  if (desc.pressure) return std::nullopt;
+  if (!std::isinf(desc.extension_max)) return desc.extension_max;
+  const double own_stretch = mass * kGravity / std::sqrt(area) / static_cast<double>(desc.stretch_stiffness);
+  if (own_stretch > kMostOwnStretch) return std::nullopt;
+  return static_cast<Real>(2 * kMostOwnStretch);
+}
+
+void append_tethers(const Surface& s, const ClothDesc& desc, Real slack, state::Tables& tables) {
   std::vector<std::uint32_t> pins;
   for (const PinDesc& pin : desc.pins) pins.push_back(pin.point);
   const TetherSurface surface = {s.points, s.triangles, s.topology, s.is_grid};
   for (const Tether& tether : find_tethers(surface, pins)) {
     append_spring({.a = tether.point,
                    .b = tether.pin,
-                   .rest_length = tether.length,
+                   .rest_length = (Real(1) + slack) * tether.length,
                    .stiffness = kRigid,
                    .damping = Real(0),
                    .kind = SpringClass::kTether},
@@ -430,7 +443,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   append_springs(surface, desc, mass, tables);
   append_bends(surface, desc, tables);
   append_triangles(surface, mass / area, tables);
-  append_tethers(surface, desc, tables);
+  if (const auto slack = slack_of_tethers(desc, mass, area)) append_tethers(surface, desc, *slack, tables);
   append_places(surface, desc, tables);
   return {};
 }

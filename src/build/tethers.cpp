@@ -1,6 +1,7 @@
 #include "build/tethers.h"
 
 #include "base/assert.h"
+#include "base/disjoint_sets.h"
 #include "geometry/mesh/geodesic.h"
 
 #include <algorithm>
@@ -11,7 +12,13 @@ namespace hooke::build {
 
 namespace {
 
-constexpr std::size_t kMostPinsWithSecond = 8;
+constexpr std::size_t kMostTethersOfPoint = 4;
+/// Pins that are asked for each point. Distances along a curved surface take long to find.
+constexpr std::size_t kMostPinsOfFlat = 256;
+constexpr std::size_t kMostPinsOfCurved = 32;
+/// Two pins hold a point against the same if the angle between them is less than 10 degrees, as seen from
+/// it; this is the cosine.
+constexpr double kAlike = 0.985;
 
 std::vector<double> distances_from(const TetherSurface& surface, std::uint32_t pin) {
   std::vector<double> result;
@@ -27,39 +34,85 @@ std::vector<double> distances_from(const TetherSurface& surface, std::uint32_t p
   return result;
 }
 
-struct NearestPin {
-  double length = std::numeric_limits<double>::infinity();
-  std::uint32_t pin = 0;
-};
-
-/// Finds for each point the nearest of the pins for which counts(point, pin) is true.
-template <class Counts>
-std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::span<const std::uint32_t> pins,
-                                          Counts&& counts) {
-  std::vector<NearestPin> nearest(surface.points.size());
-  std::vector<std::uint32_t> points;  // Points for which the pin counts.
-  for (const std::uint32_t pin : pins) {
-    points.clear();
-    for (std::uint32_t i = 0; i < nearest.size(); ++i) {
-      if (counts(i, pin)) points.push_back(i);
-    }
-    if (points.empty()) continue;  // Distances along a curved surface take long to find.
-    const std::vector<double> distance = distances_from(surface, pin);
-    HOOKE_ASSERT(distance.size() == nearest.size());
-    for (const std::uint32_t i : points) {
-      if (distance[i] < nearest[i].length) nearest[i] = {distance[i], pin};
-    }
+/// Of many pins, keeps `most` that lie far apart: each is the farthest one from those before it.
+std::vector<std::uint32_t> thin_out(const TetherSurface& surface, std::vector<std::uint32_t> pins,
+                                    std::size_t most) {
+  if (pins.size() <= most) return pins;
+  std::vector<double> gap(pins.size(), std::numeric_limits<double>::infinity());
+  std::vector<std::uint32_t> kept;
+  std::size_t next = 0;
+  while (kept.size() < most) {
+    kept.push_back(pins[next]);
+    const DVec3 last = surface.points[pins[next]];
+    for (std::size_t i = 0; i < pins.size(); ++i)
+      gap[i] = std::min(gap[i], length_squared(surface.points[pins[i]] - last));
+    next = static_cast<std::size_t>(std::distance(gap.begin(), std::max_element(gap.begin(), gap.end())));
   }
-  return nearest;
+  return kept;
 }
 
-/// Whether `other` and `pin` lie on different sides of the point: the directions to them differ by more than
-/// a right angle. Those to two pins on one straight edge do not.
-bool is_opposite(const TetherSurface& surface, std::uint32_t point, std::uint32_t pin, std::uint32_t other) {
-  const DVec3 to_pin = surface.points[pin] - surface.points[point];
-  const DVec3 to_other = surface.points[other] - surface.points[point];
-  return dot(to_pin, to_other) < 0;
-}
+/// Chooses the pins that hold a point.
+class PinChoice {
+ public:
+  PinChoice(const TetherSurface& surface, std::span<const std::uint32_t> pins)
+      : surface_(surface), pins_(pins), parts_(surface.points.size()), sight_(pins.size()) {
+    for (const geometry::Edge& edge : surface.topology.edges) parts_.merge(edge[0], edge[1]);
+  }
+
+  /// The nearest pin of its part of the surface, and then those whose directions differ most from the
+  /// directions to the ones before.
+  const std::vector<std::uint32_t>& choose(std::uint32_t point) {
+    chosen_.clear();
+    std::size_t next = look(point);
+    while (next < pins_.size() && chosen_.size() < kMostTethersOfPoint) {
+      chosen_.push_back(pins_[next]);
+      next = find_other_side(sight_[next].direction);
+    }
+    return chosen_;
+  }
+
+ private:
+  /// A pin as seen from the point.
+  struct Sight {
+    DVec3 direction = {};
+    double alike = 0;  ///< Largest cosine of the angle to the pins that are chosen.
+  };
+
+  /// Looks at all pins from a point. Returns which is nearest, or the number of pins if there is none.
+  std::size_t look(std::uint32_t point) {
+    std::size_t nearest = pins_.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < pins_.size(); ++i) {
+      const DVec3 way = surface_.points[pins_[i]] - surface_.points[point];
+      const double distance = length(way);
+      const bool counts = distance > 0 && parts_.root(pins_[i]) == parts_.root(point);
+      sight_[i] = counts ? Sight{(1 / distance) * way, -1} : Sight{{}, 1};
+      if (!counts || distance >= least) continue;
+      least = distance;
+      nearest = i;
+    }
+    return nearest;
+  }
+
+  std::size_t find_other_side(DVec3 last) {
+    std::size_t other = pins_.size();
+    double least = kAlike;
+    for (std::size_t i = 0; i < pins_.size(); ++i) {
+      Sight& sight = sight_[i];
+      sight.alike = std::max(sight.alike, dot(last, sight.direction));
+      if (sight.alike >= least) continue;
+      least = sight.alike;
+      other = i;
+    }
+    return other;
+  }
+
+  const TetherSurface& surface_;
+  std::span<const std::uint32_t> pins_;
+  base::DisjointSets parts_;  ///< Points that edges join.
+  std::vector<Sight> sight_;  ///< By pin.
+  std::vector<std::uint32_t> chosen_;
+};
 
 }  // namespace
 
@@ -71,19 +124,20 @@ std::vector<Tether> find_tethers(const TetherSurface& surface, std::span<const s
     if (!is_pin[pin]) distinct.push_back(pin);
     is_pin[pin] = true;
   }
-  const bool few = pins.size() <= kMostPinsWithSecond;
-  const std::vector<NearestPin> first =
-      find_nearest_pins(surface, distinct, [](std::uint32_t, std::uint32_t) { return true; });
-  const std::vector<NearestPin> second =
-      find_nearest_pins(surface, distinct, [&](std::uint32_t point, std::uint32_t pin) {
-        return few ? pin != first[point].pin : is_opposite(surface, point, first[point].pin, pin);
-      });
+  const std::vector<std::uint32_t> asked =
+      thin_out(surface, std::move(distinct), surface.is_flat ? kMostPinsOfFlat : kMostPinsOfCurved);
+  PinChoice choice(surface, asked);
+  std::vector<std::vector<std::uint32_t>> held(surface.points.size());  // By pin: the points that it holds.
+  for (std::uint32_t i = 0; i < surface.points.size(); ++i) {
+    if (is_pin[i]) continue;
+    for (const std::uint32_t pin : choice.choose(i)) held[pin].push_back(i);
+  }
   std::vector<Tether> tethers;
-  for (const std::vector<NearestPin>& round : {first, second}) {
-    for (std::uint32_t i = 0; i < round.size(); ++i) {
-      if (is_pin[i] || std::isinf(round[i].length)) continue;
-      tethers.push_back({i, round[i].pin, static_cast<Real>(round[i].length)});
-    }
+  for (const std::uint32_t pin : asked) {
+    if (held[pin].empty()) continue;
+    const std::vector<double> distance = distances_from(surface, pin);
+    HOOKE_ASSERT(distance.size() == surface.points.size());
+    for (const std::uint32_t i : held[pin]) tethers.push_back({i, pin, static_cast<Real>(distance[i])});
   }
   return tethers;
 }

@@ -24,10 +24,10 @@ struct TetherSurface {
   bool is_flat = false;
 };
 
-/// Finds two tethers for each point that is no pin: one to its nearest pin, and one to a second pin. Points
-/// that no pin holds have none. All nearest pins come first, then the second ones. For up to 8 pins the
-/// second is the next nearest. For more it is the nearest on the other side of the point, because cloth that
-/// hangs between two sides must not slip to one of them.
+/// Finds up to four tethers for each point that is no pin: one to its nearest pin, and others to pins that
+/// lie in other directions from it, because cloth that hangs between its pins must not slip to one of them.
+/// Points that edges join to no pin have none. Of more than 256 pins those that lie far apart count, of a
+/// curved surface of more than 32. Tethers of one pin follow each other.
 [[nodiscard]] std::vector<Tether> find_tethers(const TetherSurface& surface,
                                                std::span<const std::uint32_t> pins);
 

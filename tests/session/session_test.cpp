@@ -83,7 +83,8 @@ TEST_SUITE("session/live_scene") {
       const DVec3 start = live.hand().place(live.simulation().world());
       REQUIRE(live.act(MoveHand{start + DVec3{0, 0.3, 0.2}}).done);
       make_steps(live, 60);
-      CHECK(length(live.hand().place(live.simulation().world()) - start) > 0.2);
+      // The flag is held 0.3 m from its pole, and does not stretch.
+      CHECK(length(live.hand().place(live.simulation().world()) - start) > (name == "flag" ? 0.15 : 0.2));
       CHECK(live.act(Release{}).text == "let go of '" + name + "'");
       CHECK(live.held().empty());
     }

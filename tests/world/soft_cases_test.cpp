@@ -368,8 +368,9 @@ TEST_SUITE("world/soft_cases") {
       run(world, 120);
       CHECK(length(world.positions(id)[61] - world.positions(id)[60]) == doctest::Approx(1).epsilon(1e-4));
       CHECK(length(world.positions(id)[1] - world.positions(id)[0]) == doctest::Approx(0.1).epsilon(0.1));
-      // Next to that edge points tremble: rows see tension across themselves one substep late.
-      CHECK(fastest_of(world, id) < 200);
+      // Next to that edge points tremble: rows see tension across themselves one substep late, and tethers to
+      // the two pins pull against each other.
+      CHECK(fastest_of(world, id) < 300);
       for (std::size_t i = 0; i < 121; ++i) CHECK(length(world.positions(id)[i]) < 1.5);
     }
   }

@@ -104,7 +104,8 @@ void IgnoredKeys::check(const SceneCloth& cloth, const std::string& path) {
   ignore(path, {"position", "rotation"}, cloth.mesh.empty(), "it is for a mesh; a grid has a 'corner'");
   ignore(path, {"areal_density"}, desc.total_mass.has_value(), "'total_mass' replaces it");
   ignore(path, {"bend_stiffness", "bend_damping"}, desc.bend == ClothDesc::Bend::kNone, "'bend' is \"none\"");
-  ignore(path, {"tethers"}, desc.tethers && cloth.pins.empty(), "there are no 'pins'; hooks do not count");
+  ignore(path, {"tethers"}, desc.tethers.value_or(false) && cloth.pins.empty(),
+         "there are no 'pins'; hooks do not count");
 }
 
 void IgnoredKeys::check(const SceneSolid& solid, const std::string& path) {

@@ -253,8 +253,10 @@ std::vector<Field> cloth_rows() {
           "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
       field<kDesc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
                                               "Largest relative extension of a stretch spring."),
-      field<kDesc, &ClothDesc::tethers>("tethers", "", kAny,
-                                        "Hold every point within its rest distance of the pins."),
+      field<kDesc, &ClothDesc::tethers>(
+          "tethers", "", kAny,
+          "Hold points within their rest distance of the pins; by default if the "
+          "cloth is stiff."),
       field<kDesc, &ClothDesc::pressure>("pressure", "Pa", between(-1e5, 1e8),
                                          "Of gas in a closed mesh, above that of the air, at the start."),
       field<kDesc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,

@@ -89,7 +89,8 @@ HWY_INLINE void compute_impulses(Rows& rows, Vector rest_length, const Law& law)
     const Vector whole = hn::Mul(l, law.recovery);
     const Vector most = hn::Add(whole, hn::Mul(law.recovery_time, hn::Max(rate, none)));
     const Vector least = hn::Sub(hn::Mul(law.recovery_time, hn::Min(rate, none)), whole);
-    error = hn::Min(hn::Max(error, least), most);
+    if constexpr (!kOneSided) error = hn::Max(error, least);
+    error = hn::Min(error, most);
   }
   Vector numerator = hn::Add(rate, hn::Mul(law.bias, error));
   const Vector zero = hn::Zero(kTag);

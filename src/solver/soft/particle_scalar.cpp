@@ -27,7 +27,9 @@ void solve_row(const SpringBlock& block, int lane, const SpringMaterial& materia
     const Real whole = l * material.recovery;
     const Real most = whole + material.recovery_time * std::max(rate, Real(0));
     const Real least = material.recovery_time * std::min(rate, Real(0)) - whole;
-    error = std::min(std::max(error, least), most);
+    // What only pulls has no error to take back while it is slack.
+    if (!material.one_sided) error = std::max(error, least);
+    error = std::min(error, most);
   }
   Real numerator = rate + material.bias * error;
   if (material.one_sided) numerator = numerator > Real(0) ? numerator : Real(0);

@@ -17,6 +17,10 @@ namespace hooke::solver {
 /// balls at 250 m/s go through the net of B-28.
 inline constexpr Real kRigidSpringRecoverySpeed = Real(100);
 
+/// The same for a tether [m/s]. It is too long only where its pin has jumped, or where others pull against
+/// it. Larger: at 100 m/s points between two pins that are pulled apart shake at 250 m/s.
+inline constexpr Real kTetherRecoverySpeed = Real(3);
+
 /// Damping of a spring or bend counts up to the larger of these: a share of m / h, and a multiple of h k
 /// [ratio]. Larger: a damper far beyond its spring is a lock on speed, and one pass over a sheet of locks
 /// makes energy; of 10 000 random sheets 110 came beyond 30 to 50 m/s, with the bound 27. Smaller: what is

@@ -154,7 +154,8 @@ void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
     material.bias = soft.bias;
     material.gamma = soft.gamma;
     const bool rigid = std::isinf(material.stiffness);
-    material.recovery = rigid ? h * kRigidSpringRecoverySpeed : SpringMaterial::kWhole;
+    const Real speed = material.anchored ? kTetherRecoverySpeed : kRigidSpringRecoverySpeed;
+    material.recovery = rigid ? h * speed : SpringMaterial::kWhole;
     material.recovery_time = rigid ? h : Real(0);
   }
 }
