@@ -14,6 +14,7 @@
 #include "hooke/query.h"
 #include "hooke/result.h"
 #include "hooke/shape.h"
+#include "hooke/statics.h"
 #include "hooke/version.h"
 #include "hooke/world.h"
 
