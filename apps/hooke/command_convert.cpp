@@ -1,6 +1,7 @@
 #include "hooke/command_line.h"
 #include "hooke/geometry.h"
 #include "hooke/model_io.h"
+#include "hooke/model_options.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -38,28 +39,21 @@ int command_convert(Arguments arguments) {
                "hooke convert");
   std::string input;
   std::string output;
-  ImportOptions options;
-  std::optional<double> scale;
+  ModelOptions model_options;
   Combination combinations[] = {
       {"--union", "Join with this solid", SolidOperation::kUnion},
       {"--intersect", "Keep what is in this solid, too", SolidOperation::kIntersection},
       {"--subtract", "Take this solid out", SolidOperation::kDifference},
   };
-  const std::map<std::string, UpAxis> axes = {{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}};
   const std::map<std::string, ModelOrigin> origins = {
       {"file", ModelOrigin::kFile}, {"center", ModelOrigin::kCenter}, {"bottom", ModelOrigin::kBottom}};
   app.add_option("IN", input, "Model to read")->required();
   app.add_option("OUT", output, "Model to write")->required();
-  app.add_option("--up", options.up, "Axis that points up in the file: x, y or z; the format's by default")
-      ->transform(CLI::Transformer(axes).description(""))
-      ->option_text("AXIS");
-  add_number(app, "--scale", scale, 1e-9, 1e9, "Meters per unit of the file");
-  add_number(app, "--fit", options.fit, 1e-6, 1e6, "Make the longest side so long [m]");
-  app.add_option("--origin", options.origin,
+  add_model_options(app, model_options);
+  app.add_option("--origin", model_options.import.origin,
                  "Put the origin there: file, center or bottom; the file's by default")
       ->transform(CLI::Transformer(origins).description(""))
       ->option_text("PLACE");
-  app.get_option("--fit")->excludes("--scale");
   auto* const operations = app.add_option_group("Solids", "One of these; both models must be closed");
   for (Combination& c : combinations) operations->add_option(c.option, c.other, c.help)->option_text("MODEL");
   operations->require_option(0, 1);
@@ -70,7 +64,7 @@ int command_convert(Arguments arguments) {
       "  hooke convert scenes/models/crate.3ds --subtract scenes/models/lantern.3ds hollow.obj");
   if (const auto code = parse(app, arguments)) return *code;
 
-  options.scale = scale.value_or(options.scale);
+  const ImportOptions options = model_options.options();
   auto model = import_model(input, options);
   for (const Combination& c : combinations) {
     if (model && !c.other.empty()) model = combine(model.value(), c, options);

@@ -34,6 +34,7 @@ constexpr std::array kCommands = {
     Command{"bench", "time scenes", command_bench},
     Command{"convert", "convert a model from .3ds .obj .stl .ply .gltf .glb to .3ds .obj .stl .glb",
             command_convert},
+    Command{"settle", "find the poses in which a model lies still, and their probabilities", command_settle},
     Command{"validate", "check scene files and the models they use; nothing may be in vain",
             command_validate},
     Command{"new", "write a scene to start from", command_new},

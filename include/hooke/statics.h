@@ -48,8 +48,8 @@ struct StablePoses {
 /// - The solid starts on each facet with the probability of the facet's solid angle, seen from the center of
 ///   mass. A facet that does not have the center above it passes its probability to the neighbor across the
 ///   side that the center overhangs most (Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny 1999, Part pose
-///   statistics: estimators and experiments; the quasi-static estimator). A solid that is dropped bounces and
-///   rolls on, so that poses which are easily tipped come out too probable.
+///   statistics: estimators and experiments; the quasi-static estimator). Of a solid that bounces and
+///   rolls on, poses which are easily tipped come out too probable.
 /// - Facets within 2e-5 of the extent of one plane are one facet. A margin below 1e-6 of the largest distance
 ///   from the hull's center counts as none.
 ///

@@ -3,6 +3,7 @@
 import copy
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -514,6 +515,53 @@ class Convert(Program):
         self.assert_one_line(self.hooke("convert", "a.obj", "x.obj", "--union", "far.obj", "--subtract", "far.obj",
                                         code=2)[1], "^hooke convert: ")
         self.assertNotIn("x.obj", self.files())
+
+    def test_a_brick_lies_on_six_sides(self):
+        self.write_boxes("brick.obj", ((0, 0, 0), (1, 2, 3)))
+        out, _ = self.hooke("settle", "brick.obj", "--json", "-", "--csv", "poses.csv")
+        report = json.loads(out)
+        self.assertEqual(report["center"], [0.5, 1, 1.5])
+        self.assertEqual(len(report["poses"]), 6)
+        self.assertAlmostEqual(sum(pose["probability"] for pose in report["poses"]), 1, places=12)
+        # 4 atan(p q / (r diagonal)) is the solid angle of a side p x q at the distance r / 2.
+        first = report["poses"][0]
+        self.assertAlmostEqual(first["probability"], math.atan(6 / math.sqrt(14)) / math.pi, places=12)
+        self.assertAlmostEqual(first["tip_angle"], math.atan(2), places=6)
+        lines = (self.folder / "poses.csv").read_text().splitlines()
+        self.assertEqual((len(lines), len(lines[0].split(","))), (7, 9))
+        self.assertEqual(float(lines[1].split(",")[1]), first["probability"])
+
+    def test_drops_repeat_to_the_bit_and_sum_to_one(self):
+        self.write_boxes("brick.obj", ((0, 0, 0), (1, 2, 3)))
+        words = ("settle", "brick.obj", "--drops", 60, "--json", "-")
+        out, _ = self.hooke(*words)
+        self.assertEqual(self.hooke(*words)[0], out)
+        self.assertNotEqual(self.hooke(*words, "--seed", 2)[0], out)
+        report = json.loads(out)
+        frequencies = [pose["frequency"] for pose in report["poses"]]
+        self.assertAlmostEqual(sum(frequencies) + report["elsewhere"] + report["moving"], 1, places=12)
+        # Slow rolling gives 0.645 for the two largest sides; 60 drops scatter by 0.06 about that.
+        self.assertAlmostEqual(frequencies[0] + frequencies[1], 0.645, delta=0.18)
+
+    def test_a_model_is_written_as_it_lies(self):
+        self.write_boxes("brick.obj", ((0, 0, 0), (1, 2, 3)))
+        self.hooke("settle", "brick.obj", "--out", "lying.obj", "--pose", 1)
+        lines = (self.folder / "lying.obj").read_text().split("\n")
+        heights = [float(line.split()[2]) for line in lines if line.startswith("v ")]
+        self.assertAlmostEqual(min(heights), 0, places=6)
+        self.assertAlmostEqual(max(heights), 1, places=6)
+        self.assert_one_line(self.hooke("settle", "brick.obj", "--out", "x.obj", "--pose", 7, code=2)[1],
+                             "^--pose: 7: the model has 6 stable poses")
+
+    def test_an_open_model_takes_its_center_from_voxels_or_from_the_user(self):
+        self.write_boxes("open.obj", ((0, 0, 0), (1, 2, 3)), without=1)
+        out, errors = self.hooke("settle", "open.obj", "--json", "-")
+        self.assertIn("closed by voxels", errors)
+        self.assertAlmostEqual(json.loads(out)["center"][2], 1.5, delta=0.05)
+        out, errors = self.hooke("settle", "open.obj", "--center", "0.5,1,0.2", "--json", "-")
+        self.assertEqual((json.loads(out)["center"], errors), ([0.5, 1, 0.2], ""))
+        self.assert_one_line(self.hooke("settle", "open.obj", "--center", "9,1,1", code=2)[1], "^center: ")
+        self.assertIn("closed", self.hooke("settle", "open.obj", "--drops", 1, code=2)[1].splitlines()[-1])
 
     def test_bad_models_and_names(self):
         (self.folder / "bad.3ds").write_bytes(b"MM\x00")
