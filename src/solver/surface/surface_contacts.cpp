@@ -11,6 +11,12 @@ namespace hooke::solver {
 
 namespace {
 
+std::size_t vertex_count(const SurfaceContacts& contacts, const SurfaceGroup& group) {
+  std::size_t count = 0;
+  for (const std::uint32_t mesh : group.meshes) count += contacts.surfaces.meshes[mesh].vertex_count;
+  return count;
+}
+
 /// Whether some surface may touch another, or itself.
 bool may_touch(const state::Tables& t, const SurfaceMeshes& surfaces) {
   return surfaces.meshes.size() > 1 ||
@@ -18,10 +24,28 @@ bool may_touch(const state::Tables& t, const SurfaceMeshes& surfaces) {
                      [&](const SurfaceMesh& mesh) { return t.objects[mesh.object].surface.self_contact; });
 }
 
+/// Calls `work(group)` with each group, on several threads.
 template <class Work>
 void for_groups(parallel::ThreadPool& pool, SurfaceContacts& contacts, Work work) {
   parallel::for_items(pool, static_cast<int>(contacts.live_groups),
                       [&](int i) { work(contacts.groups[static_cast<std::size_t>(i)]); });
+}
+
+/// Calls `work(group, pool)` with each group. One that has more than a thread's share of all points gets the
+/// pool, to divide its own work; of the others each is the work of one thread, and gets none.
+template <class Work>
+void for_groups_divided(parallel::ThreadPool& pool, SurfaceContacts& contacts, Work work) {
+  std::size_t all = 0;
+  contacts.for_groups([&](const SurfaceGroup& group) { all += vertex_count(contacts, group); });
+  const auto is_large = [&](const SurfaceGroup& group) {
+    return vertex_count(contacts, group) * static_cast<std::size_t>(pool.workers()) > all;
+  };
+  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+    if (!is_large(group)) work(group, nullptr);
+  });
+  contacts.for_groups([&](SurfaceGroup& group) {
+    if (is_large(group)) work(group, &pool);
+  });
 }
 
 /// Whether contacts are not known, or vertices are about to leave their cages.
@@ -86,14 +110,14 @@ void find_contacts_of_stiff_solids(parallel::ThreadPool& pool, Real h, SurfaceCo
                                    const state::Tables& tables) {
   if (!contacts.active || !contacts.any_stiff) return;
   refresh_surface_groups(tables, h, contacts);
-  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+  for_groups_divided(pool, contacts, [&](SurfaceGroup& group, parallel::ThreadPool* workers) {
     const bool any_stiff = std::any_of(group.meshes.begin(), group.meshes.end(), [&](std::uint32_t mesh) {
       return contacts.stiff[contacts.surfaces.meshes[mesh].object] != 0;
     });
     if (!any_stiff) return;
     // Planes that are out of date move what rolls or slides over an edge, which strains what is stiff.
     if (needs_contacts(tables, h, contacts, group) || pairs_would_meet(tables, h, contacts, group))
-      find_group_contacts(tables, h, contacts, group);
+      find_group_contacts(workers, tables, h, contacts, group);
   });
 }
 
@@ -104,14 +128,14 @@ bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContact
   std::fill(contacts.refreshed.begin(), contacts.refreshed.end(), std::uint8_t{0});
   std::fill(contacts.touching.begin(), contacts.touching.end(), std::uint8_t{0});
   std::atomic<bool> any = false;
-  for_groups(pool, contacts, [&](SurfaceGroup& group) {
+  for_groups_divided(pool, contacts, [&](SurfaceGroup& group, parallel::ThreadPool* workers) {
     for (const std::uint32_t mesh : group.meshes)
       contacts.touching[contacts.surfaces.meshes[mesh].object] = 1;
     if (!needs_contacts(tables, h, contacts, group)) return;
     any = true;
     for (const std::uint32_t mesh : group.meshes)
       contacts.refreshed[contacts.surfaces.meshes[mesh].object] = 1;
-    find_group_contacts(tables, h, contacts, group);
+    find_group_contacts(workers, tables, h, contacts, group);
     solve_surface_rows(h, false, contacts, group, tables.particles);
   });
   return any;

@@ -12,6 +12,16 @@ namespace hooke::solver {
 
 namespace {
 
+/// Calls `work` with each of `count` items, on several threads if there is a pool.
+template <class Work>
+void for_items(parallel::ThreadPool* pool, std::size_t count, Work work) {
+  if (pool != nullptr) {
+    return parallel::for_items(*pool, static_cast<int>(count),
+                               [&](int i) { work(static_cast<std::size_t>(i)); });
+  }
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
 constexpr double kMovingShare = 0.95;  ///< Share of the points that decides how long cages last.
 
 /// Takes positions at the start of the substep and velocities of now.
@@ -171,6 +181,13 @@ class RowMaker {
     return object(mesh_a).surface.radius + object(mesh_b).surface.radius;
   }
 
+  /// Says which rows there will be. It changes nothing else, so that threads may do it at once.
+  void set_shares(std::span<SurfaceFound> all) const {
+    for (SurfaceFound& found : all) {
+      if ((found.flags & SurfaceFound::kUncertain) == 0) found.share = share_of(found);
+    }
+  }
+
   void take(const SurfaceFound& found) {
     if ((found.flags & SurfaceFound::kUncertain) != 0 && !separate(found)) return;
     if ((found.flags & SurfaceFound::kReachable) != 0) add_pair(found);
@@ -213,6 +230,7 @@ class RowMaker {
     const bool outward =
         object(found.second_mesh).kind == PointRef::Kind::kSolid || found.first_mesh >= found.second_mesh;
     turned.normal = ((outward ? Real(1) : Real(-1)) / size) * face;
+    turned.share = share_of(turned);
     add_row(turned);
     return false;
   }
@@ -290,6 +308,10 @@ class RowMaker {
     return is_in_cone(found.second_mesh, tip, found.normal) ? kRidgeShare : Real(0);
   }
 
+  [[nodiscard]] Real share_of(const SurfaceFound& found) const {
+    return found.is_edges ? share_of_edges(found) : share_of_face(found);
+  }
+
   /// Whether both are solids, and one is stiff.
   [[nodiscard]] bool belongs_to_solution(const SurfaceFound& found) const {
     const std::uint32_t a = c_.surfaces.meshes[found.first_mesh].object;
@@ -299,13 +321,12 @@ class RowMaker {
   }
 
   void add_row(const SurfaceFound& found) {
-    const Real share = found.is_edges ? share_of_edges(found) : share_of_face(found);
-    if (!(share > Real(0))) return;
+    if (!(found.share > Real(0))) return;
     SurfaceRow row;
     row.vertex = found.vertex;
     row.weight = found.weight;
     row.normal = found.normal;
-    row.distance = share * distance_of(found);
+    row.distance = found.share * distance_of(found);
     row.friction = std::sqrt(object(found.first_mesh).friction * object(found.second_mesh).friction);
     if (belongs_to_solution(found)) {
       group_.stiff_rows.push_back(row);
@@ -335,8 +356,8 @@ bool clip_to_cage(const SurfaceCage& cage, Vec3& displacement) {
   return true;
 }
 
-void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& contacts,
-                         SurfaceGroup& group) {
+void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables, Real h,
+                         SurfaceContacts& contacts, SurfaceGroup& group) {
   place_vertices(tables, contacts, group);
   make_cages(tables, h, contacts, group);
   group.rows.clear();
@@ -345,18 +366,19 @@ void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& c
   group.edge_pairs.clear();
   group.known = true;
   ++group.counts.searches;
-  const auto radius = [&](std::uint32_t mesh) {
-    return tables.objects[contacts.surfaces.meshes[mesh].object].surface.radius;
-  };
+  for_items(pool, group.meshes.size(), [&](std::size_t i) {
+    const std::uint32_t mesh = group.meshes[i];
+    const Real radius = tables.objects[contacts.surfaces.meshes[mesh].object].surface.radius;
+    const Real reach = (Real(1) + kSurfaceMargin) * radius + Real(2) * group.reserve;
+    const Real edge_reach = (kEdgeShare + kEdgeMargin) * radius + Real(2) * group.reserve;
+    fit_boxes(contacts, contacts.surfaces.meshes[mesh], reach, edge_reach, contacts.boxes[mesh]);
+  });
+  if (group.found.size() < group.pairs.size()) group.found.resize(group.pairs.size());
   RowMaker maker(tables, contacts, group);
-  for (const std::uint32_t i : group.meshes) {
-    const Real reach = (Real(1) + kSurfaceMargin) * radius(i) + Real(2) * group.reserve;
-    const Real edge_reach = (kEdgeShare + kEdgeMargin) * radius(i) + Real(2) * group.reserve;
-    fit_boxes(contacts, contacts.surfaces.meshes[i], reach, edge_reach, contacts.boxes[i]);
-  }
-  group.found.clear();
-  for (const auto& [a, b] : group.pairs) {
+  for_items(pool, group.pairs.size(), [&](std::size_t i) {
+    const auto& [a, b] = group.pairs[i];
     const Real distance = maker.distance_of(a, b);
+    group.found[i].clear();
     wide::search_surfaces({.mesh_a = &contacts.surfaces.meshes[a],
                            .mesh_b = &contacts.surfaces.meshes[b],
                            .boxes_a = &contacts.boxes[a],
@@ -369,9 +391,13 @@ void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& c
                            .face_near = (Real(1) + kSurfaceMargin) * distance,
                            .edge_near = (kEdgeShare + kEdgeMargin) * distance,
                            .reserve = group.reserve},
-                          group.found);
+                          group.found[i]);
+    maker.set_shares(group.found[i]);
+  });
+  // Rows go into blocks in the order of pairs, whoever found them.
+  for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+    for (const SurfaceFound& found : group.found[i]) maker.take(found);
   }
-  for (const SurfaceFound& found : group.found) maker.take(found);
   maker.finish();
 }
 

@@ -1,13 +1,16 @@
 #pragma once
 
+#include "parallel/thread_pool.h"
 #include "solver/surface/surface_groups.h"
 
 namespace hooke::solver {
 
 /// Finds the contacts of a group from where its vertices began the substep, and from their velocities now:
 /// cages in which they are expected to stay for as many of the `substeps` left as they move little, rows for
-/// what comes near, and the pairs that cages do not keep apart.
-void find_group_contacts(const state::Tables& tables, Real h, SurfaceContacts& contacts, SurfaceGroup& group);
+/// what comes near, and the pairs that cages do not keep apart. Surfaces and pairs of them are divided among
+/// the threads of `pool`, unless it is null.
+void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables, Real h,
+                         SurfaceContacts& contacts, SurfaceGroup& group);
 
 /// Clips the displacement of a vertex to its cage: where it is, relative to where contacts were found and to
 /// the motion of the group. Returns whether it was outside.

@@ -34,9 +34,9 @@ struct SurfaceGroup {
   std::vector<SurfaceRowBlock> rows;
   std::vector<SurfaceRow> stiff_rows;  ///< Those between solids that are solved as a whole.
   std::vector<SurfacePairBlock> face_pairs, edge_pairs;
-  std::vector<SurfaceFound> found;  ///< Scratch memory.
-  std::vector<std::uint32_t> hot;   ///< Scratch memory: pairs that are corrected.
-  std::vector<Real> speeds;         ///< Scratch memory.
+  std::vector<std::vector<SurfaceFound>> found;  ///< By pair of meshes: scratch memory.
+  std::vector<std::uint32_t> hot;                ///< Scratch memory: pairs that are corrected.
+  std::vector<Real> speeds;                      ///< Scratch memory.
   SurfaceCounts counts;
 };
 

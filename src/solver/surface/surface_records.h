@@ -72,6 +72,7 @@ struct SurfaceFound {
   std::uint32_t second_feature = 0;  ///< Index of the triangle or of the second edge.
   std::uint32_t first_mesh = 0, second_mesh = 0;
   std::uint32_t flags = 0;
+  Real share = Real(0);  ///< Share of the thickness that a row keeps; 0 without a row.
   bool is_edges = false;
 };
 
