@@ -20,18 +20,20 @@ constexpr std::size_t kMostPinsOfCurved = 32;
 /// it; this is the cosine.
 constexpr double kAlike = 0.985;
 
-std::vector<double> distances_from(const TetherSurface& surface, std::uint32_t pin) {
-  std::vector<double> result;
+/// Ties the points that a pin holds to it.
+void append_tethers_of(const TetherSurface& surface, std::uint32_t pin, std::span<const std::uint32_t> held,
+                       std::vector<Tether>& tethers) {
   if (surface.is_flat) {
-    for (const DVec3& p : surface.points) result.push_back(length(p - surface.points[pin]));
-    return result;
+    for (const std::uint32_t i : held)
+      tethers.push_back({i, pin, static_cast<Real>(length(surface.points[i] - surface.points[pin]))});
+    return;
   }
   std::vector<Vec3> offsets;
   for (const DVec3& p : surface.points) offsets.push_back(vector_cast<Real>(p - surface.points[pin]));
   const auto field =
       geometry::compute_geodesic_field(offsets, surface.triangles, surface.topology, {&pin, 1});
-  result.assign(field.distance.begin(), field.distance.end());
-  return result;
+  HOOKE_ASSERT(field.distance.size() == surface.points.size());
+  for (const std::uint32_t i : held) tethers.push_back({i, pin, field.distance[i]});
 }
 
 /// Of many pins, keeps `most` that lie far apart: each is the farthest one from those before it.
@@ -57,6 +59,7 @@ class PinChoice {
   PinChoice(const TetherSurface& surface, std::span<const std::uint32_t> pins)
       : surface_(surface), pins_(pins), parts_(surface.points.size()), sight_(pins.size()) {
     for (const geometry::Edge& edge : surface.topology.edges) parts_.merge(edge[0], edge[1]);
+    for (const std::uint32_t pin : pins) part_of_pin_.push_back(parts_.root(pin));
   }
 
   /// The nearest pin of its part of the surface, and then those whose directions differ most from the
@@ -82,10 +85,11 @@ class PinChoice {
   std::size_t look(std::uint32_t point) {
     std::size_t nearest = pins_.size();
     double least = std::numeric_limits<double>::infinity();
+    const std::uint32_t part = parts_.root(point);
     for (std::size_t i = 0; i < pins_.size(); ++i) {
       const DVec3 way = surface_.points[pins_[i]] - surface_.points[point];
       const double distance = length(way);
-      const bool counts = distance > 0 && parts_.root(pins_[i]) == parts_.root(point);
+      const bool counts = distance > 0 && part_of_pin_[i] == part;
       sight_[i] = counts ? Sight{(1 / distance) * way, -1} : Sight{{}, 1};
       if (!counts || distance >= least) continue;
       least = distance;
@@ -110,6 +114,7 @@ class PinChoice {
   const TetherSurface& surface_;
   std::span<const std::uint32_t> pins_;
   base::DisjointSets parts_;  ///< Points that edges join.
+  std::vector<std::uint32_t> part_of_pin_;
   std::vector<Sight> sight_;  ///< By pin.
   std::vector<std::uint32_t> chosen_;
 };
@@ -134,10 +139,7 @@ std::vector<Tether> find_tethers(const TetherSurface& surface, std::span<const s
   }
   std::vector<Tether> tethers;
   for (const std::uint32_t pin : asked) {
-    if (held[pin].empty()) continue;
-    const std::vector<double> distance = distances_from(surface, pin);
-    HOOKE_ASSERT(distance.size() == surface.points.size());
-    for (const std::uint32_t i : held[pin]) tethers.push_back({i, pin, static_cast<Real>(distance[i])});
+    if (!held[pin].empty()) append_tethers_of(surface, pin, held[pin], tethers);
   }
   return tethers;
 }
