@@ -1,5 +1,5 @@
-/// Chapter 4 of the manual: a rope that stretches, one that holds a body, one over a drum, and a hair that
-/// bends.
+/// Chapter 4 of the manual: a rope that stretches, one that holds a body, a hair that bends, and one that
+/// snaps.
 
 #include "hooke/hooke.h"
 
@@ -78,9 +78,29 @@ bool hair(hooke::World& world) {
   return agrees("sag of the rod's tip [m]", sag, 0.1 * kGravity * std::pow(free, 4) / (8 * 4), 0.03);
 }
 
+/// A cord that takes 150 N, with 20 kg on it.
+bool snaps(hooke::World& world) {
+  const auto cord = world.add_rope({
+      .hook_point = {30, 3, 0},
+      .direction = {0, -1, 0},
+      .masses = 11,
+      .stiffness = 2e4f,
+      .loads = {{.point = 10, .mass = 20}},
+      .strength = 150,
+  });
+  if (!cord) return false;
+  double needed = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    world.step(1.0f / 60);
+    for (const hooke::RopeBreakEvent& event : world.events().rope_breaks) needed = event.force;
+  }
+  if (world.broken_segments(cord.value()).size() != 1) return false;
+  return agrees("force that broke the cord [N]", needed, 150, 0.15);
+}
+
 }  // namespace
 
 int main() {
   hooke::World world = hooke::World::create().value();
-  return stretched(world) && crane(world) && hair(world) ? 0 : 1;
+  return stretched(world) && crane(world) && hair(world) && snaps(world) ? 0 : 1;
 }

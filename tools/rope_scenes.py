@@ -649,8 +649,40 @@ def knot():
         hooks=[tie("hook", "load.top", "knotted.end"), tie("eye", "held.top", "turned.start")])
 
 
+def rope_snaps():
+    top, load, own, strength, half, segments = 3.0, 40.0, 0.2, 900.0, 0.12, 12
+    bend = [0.32, 0.62]  # the slack cord hangs out to the side by the first, at the depth of the second
+    side = math.hypot(*bend)
+    left, right = [-0.6, top, 0], [0.6, top, 0]
+    taut = line(left, add(left, [0, -2 * side, 0]), segments)
+    out, end = add(right, [bend[0], -bend[1], 0]), add(right, [0, -2 * bend[1], 0])
+    slack = line(right, out, segments // 2) + line(out, end, segments // 2)[1:]
+    cord = {"axial_stiffness": 4e4, "inner_friction": 400.0, "strength": strength}
+    jerk = load * math.sqrt(2 * G * 2 * (side - bend[1]))
+    return scene(
+        "A rope snaps",
+        f"Two like cords that take {strength:.0f} N, with {load:.0f} kg each. The left one gets them without "
+        f"slack: up to twice {load * G:.0f} N, and it holds. The weight on the right one falls "
+        f"{2 * (side - bend[1]):.2f} m first, and has {jerk:.0f} N s. That cord snaps at one place, and takes no more "
+        "from the weight than its strength.",
+        3, [0.6, 2.2, 4.6], [0.05, 1.75, 0], {"ground": {}, "slate": {}, "hemp": {}, "clay": {}}, [
+            ground(),
+            body("beam", "slate", box(1.2, 0.08, 0.1), [0, top + 0.08, 0], "static"),
+            body("still", "clay", box(half, half, half), add(taut[-1], [0, -half, 0]), mass=load),
+            body("dropped", "clay", box(half, half, half), add(end, [0, -half, 0]), mass=load),
+        ], [
+            tension((load + own * (1 - 0.5 / segments)) * G, "holds", 0, 0.005),
+            promise("broken", "==", 0, "holds"),
+            promise("broken", "==", 1, "snaps"),
+            promise("broken", "==", 1),
+            promise("height", "==", half, "dropped", 0.02),
+        ],
+        ropes=[rope("holds", "hemp", taut, own, 0.012, **cord), rope("snaps", "hemp", slack, own, 0.012, **cord)],
+        hooks=[tie("left", "still.top", "holds.end"), tie("right", "dropped.top", "snaps.end")])
+
+
 ROPE_SCENES = [
     crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge, trampoline, curtain_rings,
     catch_net, washing_line, cable_and_hair, hair_wind,
-    twisted_cable, knot
+    twisted_cable, knot, rope_snaps
 ]

@@ -66,8 +66,8 @@ bool passed(const Simulation& simulation) {
          std::all_of(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.passed; });
 }
 
-/// Returns the hooks that broke, in the order of time.
-static std::vector<const SceneObject*> broken_hooks(const Simulation& simulation) {
+/// Returns the hooks that broke and the ropes that snapped, in the order of time.
+static std::vector<const SceneObject*> broken_objects(const Simulation& simulation) {
   std::vector<const SceneObject*> broken;
   for (const SceneObject& object : simulation.objects()) {
     if (object.broken) broken.push_back(&object);
@@ -79,25 +79,37 @@ static std::vector<const SceneObject*> broken_hooks(const Simulation& simulation
 
 static Json json_of_breaks(const Simulation& simulation) {
   Json list = Json::array();
-  for (const SceneObject* hook : broken_hooks(simulation)) {
-    list.push_back({{"hook", hook->name},
-                    {"time", hook->broke.time},
-                    {"force", hook->broke.force},
-                    {"torque", hook->broke.torque}});
+  for (const SceneObject* object : broken_objects(simulation)) {
+    const bool is_rope = object->kind == SceneObject::Kind::kRope;
+    list.push_back({{is_rope ? "rope" : "hook", object->name},
+                    {"time", object->broke.time},
+                    {"force", object->broke.force},
+                    {"torque", object->broke.torque}});
+    if (!is_rope) continue;
+    list.back()["segments"] = simulation.world().broken_segments(object->rope);
   }
   return list;
 }
 
 /// Returns text such as "'glue' first, at 0.853 s, as it needed 312 N and 4.1 N m; 4 hooks in all".
 static std::string text_of_breaks(const Simulation& simulation) {
-  const std::vector<const SceneObject*> broken = broken_hooks(simulation);
+  const std::vector<const SceneObject*> broken = broken_objects(simulation);
   if (broken.empty()) return {};
   const BreakEvent& first = broken.front()->broke;
   std::string text =
       "broke     '" + broken.front()->name + "' first" +
       text_of(", at %.6g s, as it needed %.4g N", first.time, static_cast<double>(first.force));
   if (first.torque > Real(0)) text += text_of(" and %.4g N m", static_cast<double>(first.torque));
-  if (broken.size() > 1) text += text_of("; %zu hooks in all", broken.size());
+  const auto ropes =
+      static_cast<std::size_t>(std::count_if(broken.begin(), broken.end(), [](const SceneObject* object) {
+        return object->kind == SceneObject::Kind::kRope;
+      }));
+  const std::size_t hooks = broken.size() - ropes;
+  if (broken.size() > 1) {
+    text += ropes == 0   ? text_of("; %zu hooks in all", hooks)
+            : hooks == 0 ? text_of("; %zu ropes in all", ropes)
+                         : text_of("; %zu hooks and %zu ropes in all", hooks, ropes);
+  }
   return text + "\n";
 }
 

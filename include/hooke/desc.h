@@ -374,7 +374,12 @@ struct RopeDesc {
   std::vector<PinDesc> pins = {{}};  ///< Points that are held: the first by default, `{}` for none.
   std::vector<LoadDesc> loads = {};  ///< Masses that are added to points.
   std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for points or places.
-  Real radius = Real(0.005);          ///< Radius of the strand, for contact, wind and drawing [m]. Positive.
+  Real radius = Real(0.005);  ///< Radius of the strand, for contact, wind and drawing [m]. Positive.
+  /// Tension that the rope can take [N], positive; any by default. A segment that would need more takes this
+  /// for one substep and is broken then: the rope goes on as two. Where several need too much, the one that
+  /// needs most goes first, of equals the first along the rope, and the others only if they still need too
+  /// much. Events::rope_breaks says what broke.
+  std::optional<Real> strength = {};
   Real drag_coefficient = Real(1.1);  ///< Coefficient of drag of a cylinder across the flow. [0, 1e6]
   Real charge = Real(0);              ///< Electric charge of the rope [C], shared out by mass. [-1e9, 1e9]
   Vec3 velocity = {};                 ///< Velocity of all points at the start [m/s].

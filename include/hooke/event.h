@@ -3,6 +3,7 @@
 #include "hooke/id.h"
 #include "hooke/math.h"
 
+#include <cstdint>
 #include <vector>
 
 /// \file
@@ -49,6 +50,15 @@ struct BreakEvent {
   double time = 0;        ///< Time of the world at the end of that substep [s].
 };
 
+/// A segment of a rope that broke because it needed more than RopeDesc::strength.
+struct RopeBreakEvent {
+  RopeId rope = {};           ///< The rope, which goes on as two.
+  std::uint32_t segment = 0;  ///< The segment between points `segment` and `segment` + 1.
+  DVec3 point = {};           ///< Middle of these points at the end of the step [m].
+  Real force = Real(0);       ///< Tension that it needed, as a mean over the substep in which it broke [N].
+  double time = 0;            ///< Time of the world at the end of that substep [s].
+};
+
 /// All events of one step. Lists of bodies are in the order of the bodies' creation, and the same for any
 /// number of workers. A body that was removed while it touched something, or was in a sensor, ends that in
 /// the next step; its id is stale by then.
@@ -63,6 +73,8 @@ struct Events {
   std::vector<BodyId> fell_asleep;         ///< Bodies that fell asleep.
   std::vector<BodyId> woke_up;             ///< Bodies that woke up.
   std::vector<BreakEvent> breaks;  ///< Hooks that broke, in order of time, then of the hooks' creation.
+  /// Segments of ropes that broke, in order of time, then of the ropes' creation, then along the rope.
+  std::vector<RopeBreakEvent> rope_breaks;
 };
 
 }  // namespace hooke

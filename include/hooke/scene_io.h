@@ -300,7 +300,7 @@ struct SceneExpectation {
     kSpeed,            ///< Speed of a point, or of a body's center of mass [m/s].
     kAngularSpeed,     ///< Angular speed of a body [rad/s].
     kTilt,             ///< Angle between the y axis of a body and that of the world [degrees].
-    kExtension,        ///< Length of a rope minus its length at rest [m].
+    kExtension,        ///< Length of a rope, without segments that broke, minus its length at rest [m].
     kLargestStretch,   ///< Measurement::largest_stretch of the world.
     kMeanStretch,      ///< Measurement::mean_stretch of the world.
     kTension,          ///< Tension of a rope's segment, or the largest of them [N].
@@ -319,10 +319,11 @@ struct SceneExpectation {
     /// Size of a hook's torque on b, likewise [N m]; or the torque of a rope's segment (World::torques), or
     /// the largest of them.
     kTorque,
-    kAngle,   ///< World::hook_value of a hinge [rad].
-    kWay,     ///< World::hook_value of a slider, a wheel or a distance [m].
-    kGap,     ///< World::hook_gap of a hook; of the world, the largest [m].
-    kBroken,  ///< 1 for a hook that has broken; of the world, their number.
+    kAngle,  ///< World::hook_value of a hinge [rad].
+    kWay,    ///< World::hook_value of a slider, a wheel or a distance [m].
+    kGap,    ///< World::hook_gap of a hook; of the world, the largest [m].
+    /// 1 for a hook that has broken; for a rope, how many of its segments have; of the world, the sum.
+    kBroken,
   };
   /// How the achieved figure is compared with `value`.
   enum class Op : std::uint8_t {
@@ -457,13 +458,14 @@ struct SceneObject {
   std::vector<Part> parts = {};  ///< Shapes of a compound body.
   /// Radius of a rope's strand or of the first particle [m]; half the thickness of a cloth or solid.
   Real radius = Real(0);
-  double rest_length = 0;                    ///< Length of a rope at rest [m].
-  std::uint32_t columns = 0;                 ///< Columns of a cloth's grid; 0 for a mesh.
-  std::uint32_t rows = 0;                    ///< Rows of a cloth's grid; 0 for a mesh.
-  HookKind hook_kind = HookKind::kBall;      ///< Kind of a hook.
-  std::array<std::string, 2> hooked = {};    ///< Names of what a hook holds, a and b; empty for the world.
-  bool broken = false;                       ///< Whether a hook has broken; its id is stale then.
-  BreakEvent broke = {};                     ///< How a hook broke, if it has.
+  double rest_length = 0;                  ///< Length of a rope at rest [m].
+  std::uint32_t columns = 0;               ///< Columns of a cloth's grid; 0 for a mesh.
+  std::uint32_t rows = 0;                  ///< Rows of a cloth's grid; 0 for a mesh.
+  HookKind hook_kind = HookKind::kBall;    ///< Kind of a hook.
+  std::array<std::string, 2> hooked = {};  ///< Names of what a hook holds, a and b; empty for the world.
+  /// Whether a hook has broken, whose id is stale then, or a rope has snapped.
+  bool broken = false;
+  BreakEvent broke = {};  ///< How a hook broke, or where a rope snapped first, without its HookId.
   std::shared_ptr<const Model> model = {};   ///< Model of a mesh body, cloth or solid; of a hull, its faces.
   std::shared_ptr<const Model> visual = {};  ///< Model that is drawn in place of a body's shape; may be null.
   double mesh_volume = 0;  ///< Volume of the closed surface that a solid fills [m^3]; 0 for others.

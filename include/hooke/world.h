@@ -415,6 +415,9 @@ class World {
   /// The hooks that broke in the last step, in order of creation, valid until the next one. They are gone.
   /// Events::breaks says why they broke, and when.
   [[nodiscard]] const std::vector<HookId>& broken_hooks() const;
+  /// Segments of a rope that have broken (RopeDesc::strength), in ascending order: nothing joins points i and
+  /// i + 1 for a segment i in the list. Empty for a stale or null id.
+  [[nodiscard]] std::vector<std::uint32_t> broken_segments(RopeId id) const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. It is the mean over the
   /// last step.
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;

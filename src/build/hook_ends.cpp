@@ -4,6 +4,7 @@
 #include "build/common.h"
 #include "build/connection_points.h"
 #include "geometry/closest.h"
+#include "state/rope_chains.h"
 
 #include <algorithm>
 #include <array>
@@ -81,8 +82,15 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
     };
     for (const auto& [a, b, c] : object.skin->triangles) nearest.try_triangle(row(a), row(b), row(c));
   }
-  for (std::uint32_t i = 0; i < object.segments.count; ++i)
-    nearest.try_segment(object.particles.first + i, object.particles.first + i + 1);
+  for (std::uint32_t i = 0; i < object.segments.count; ++i) {
+    const std::uint32_t from = object.particles.first + i;
+    if (t.segments.joins(object.segments.first + i)) {
+      nearest.try_segment(from, from + 1);
+    } else {
+      nearest.try_particle(from);
+      nearest.try_particle(from + 1);
+    }
+  }
   if (nearest.place.particle_count > 0) return;
   for (std::uint32_t i = 0; i < object.particles.count; ++i) nearest.try_particle(object.particles.first + i);
 }
@@ -126,6 +134,7 @@ Result<FoundEnd> find_point(const HookEnd& end, DVec3 anchor, const char* where,
                      std::to_string(object.particles.count) + "; the first is 0"};
   }
   found.place.object = row;
+  state::leave_gap(object, t.segments, found.place);
   for (std::uint32_t i = 0; i < found.place.particle_count; ++i) {
     const Vec3 x = t.particles.position[found.place.particle[i]].x;
     found.position += static_cast<double>(found.place.weight[i]) * vector_cast<double>(x);

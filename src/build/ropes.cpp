@@ -34,6 +34,7 @@ Checks check(const RopeDesc& desc) {
       .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.axial_stiffness) checks.stiffness("axial_stiffness", static_cast<double>(*desc.axial_stiffness));
+  if (desc.strength) checks.positive("strength", static_cast<double>(*desc.strength));
   if (desc.young_modulus)
     checks.in_range("young_modulus", static_cast<double>(*desc.young_modulus), 1e-6, limits::kResistance);
   checks.require(!(desc.twist_stiffness > Real(0)) || desc.bend_stiffness > Real(0) || desc.young_modulus,
@@ -100,6 +101,9 @@ void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, d
     s.mean_tension.push_back(Real(0));
     s.limited.push_back(0);
     s.clamped.push_back(0);
+    s.hold.push_back(state::SegmentHold::kHolds);
+    s.needed_force.push_back(Real(0));
+    s.broke_at.push_back(0);
     ++tables.objects.back().segments.count;
   }
 }
@@ -146,6 +150,7 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
 
   state::Deformable& object = append_object(PointRef::Kind::kRope, points, desc.pins, tables);
   object.friction = desc.contact.friction;
+  object.strength = desc.strength.value_or(kRigid);
   object.touches_ropes = desc.touches_ropes;
   object.repulsion_strength = desc.repulsion_strength;
   object.repulsion_range = desc.repulsion_range;

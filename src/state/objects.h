@@ -99,6 +99,8 @@ struct Deformable {
   Real twist_stiffness = Real(0);  ///< GJ of a rope [N m^2].
   Real twist_rate = Real(0);       ///< Twist per length that a rope was made with [rad/m]; 0 once spans have
                                    ///< it.
+  Real strength = kRigid;          ///< Tension that a rope can take [N].
+  bool has_gaps = false;           ///< Some segment of the rope is gone.
   Real yield_angle = kRigid;       ///< Yield angle of a cloth's bends [rad].
   Real yield_stress = kRigid;      ///< Yield stress of a solid [Pa].
   std::shared_ptr<const RestEdges> rest_edges = {};  ///< Set for a solid that yields; by its tetrahedra.

@@ -108,6 +108,13 @@ struct Triangles {
   }
 };
 
+/// Whether a segment joins its nodes.
+enum class SegmentHold : std::uint8_t {
+  kHolds,
+  kBroken,  ///< It broke in this step and transmits nothing. The solver still counts its nodes as one rope.
+  kGone,    ///< It broke in an earlier step: its nodes are ends of two chains (state/rope_chains.h).
+};
+
 /// Segments of ropes: segment row s of a rope joins its nodes s and s + 1.
 struct Segments {
   std::vector<Real> rest_length;   ///< L [m]
@@ -120,8 +127,12 @@ struct Segments {
   std::vector<std::uint8_t>
       limited;  ///< 1 while the segment is held at its largest length; written by solve_rope_systems.
   std::vector<std::uint8_t> clamped;  ///< 1 if one thing holds both ends; written by note_clamps.
+  std::vector<SegmentHold> hold;      ///< Written by solve_coupled_group and drop_broken_segments.
+  std::vector<Real> needed_force;     ///< Tension that a broken segment needed [N]; else 0.
+  std::vector<double> broke_at;       ///< Time at which a segment broke [s]; else 0.
 
   [[nodiscard]] int count() const { return static_cast<int>(rest_length.size()); }
+  [[nodiscard]] bool joins(std::size_t row) const { return hold[row] == SegmentHold::kHolds; }
 
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit&& visit) {
@@ -133,6 +144,9 @@ struct Segments {
     visit(self.mean_tension);
     visit(self.limited);
     visit(self.clamped);
+    visit(self.hold);
+    visit(self.needed_force);
+    visit(self.broke_at);
   }
 };
 

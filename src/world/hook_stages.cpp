@@ -4,6 +4,7 @@
 #include "solver/body/body_motion.h"
 #include "solver/contact/impacts.h"
 #include "solver/routes.h"
+#include "state/rope_chains.h"
 #include "world/body_stages.h"
 #include "world/object_edits.h"
 
@@ -19,6 +20,17 @@ using state::HookPlace;
 
 std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
+}
+
+/// Sorts events by time and leaves those of one time in their order. Breaks are few, and std::stable_sort
+/// would allocate, so this is an insertion sort.
+template <class Event>
+void sort_by_time(std::vector<Event>& events) {
+  for (auto at = events.begin(); at != events.end(); ++at) {
+    const auto place = std::upper_bound(events.begin(), at, at->time,
+                                        [](double time, const Event& e) { return time < e.time; });
+    std::rotate(place, at, at + 1);
+  }
 }
 
 }  // namespace
@@ -88,26 +100,20 @@ void drop_broken_hooks(WorldData& world) {
     breaks.push_back(
         {world.last_step.broken_hooks.back(), hook.needed_force, hook.needed_torque, t.time + hook.held});
   }
-  // Breaks are few, and std::stable_sort would allocate, so this is an insertion sort.
-  for (auto at = breaks.begin(); at != breaks.end(); ++at) {
-    const auto place = std::upper_bound(breaks.begin(), at, at->time,
-                                        [](double time, const BreakEvent& e) { return time < e.time; });
-    std::rotate(place, at, at + 1);
-  }
+  sort_by_time(breaks);
   for (const HookId id : world.last_step.broken_hooks) remove_row(t.hook_slots, id, t.hooks);
   if (!world.last_step.broken_hooks.empty()) ++t.hook_revision;
 }
 
 namespace {
 
-/// Removes the hooks with an end for which `holds` is true and wakes what they held. The others keep their
-/// order.
-template <class Holds>
-void remove_hooks(state::Tables& t, Holds&& holds) {
+/// Removes the hooks for which `goes` is true and wakes what they held. The others keep their order.
+template <class Goes>
+void remove_hooks_if(state::Tables& t, Goes&& goes) {
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
     Hook& hook = t.hooks[i];
-    if (holds(hook.a) || holds(hook.b)) {
+    if (goes(hook)) {
       wake_ends(hook, t.bodies);
       t.hook_slots.move(hook.slot, t.hook_slots.kNone);
       continue;
@@ -123,7 +129,90 @@ void remove_hooks(state::Tables& t, Holds&& holds) {
   ++t.hook_revision;
 }
 
+/// Removes the hooks with an end for which `holds` is true.
+template <class Holds>
+void remove_hooks(state::Tables& t, Holds&& holds) {
+  remove_hooks_if(t, [&](const Hook& hook) { return holds(hook.a) || holds(hook.b); });
+}
+
+/// Puts a hook that slides along a rope back onto a segment that holds, and returns whether there is one.
+bool stay_on_rope(const state::Tables& t, HookPlace& place) {
+  const state::Deformable& rope = t.objects[place.object];
+  const std::uint32_t node = place.particle[0] - rope.particles.first;
+  const auto goes_on = [&](std::uint32_t i) {
+    return i < rope.segments.count && t.segments.hold[rope.segments.first + i] != state::SegmentHold::kGone;
+  };
+  if (goes_on(node)) return true;
+  const bool before = node > 0 && goes_on(node - 1);
+  const bool behind = goes_on(node + 1);
+  if (!before && !behind) return false;
+  const bool back = before && (!behind || place.weight[0] >= place.weight[1]);
+  place.particle[0] = rope.particles.first + (back ? node - 1 : node + 1);
+  place.particle[1] = place.particle[0] + 1;
+  place.weight[0] = back ? Real(0) : Real(1);
+  place.weight[1] = back ? Real(1) : Real(0);
+  return true;
+}
+
+/// Gives the hooks of a rope places that its parts have.
+void move_hooks_off_gaps(std::uint32_t object, state::Tables& t) {
+  const state::Deformable& rope = t.objects[object];
+  for (Hook& hook : t.hooks) {
+    for (HookPlace* end : {&hook.a, &hook.b}) {
+      if (!end->is_point() || end->object != object) continue;
+      if (hook.kind != HookKind::kRopeSlide || end != &hook.a) {
+        state::leave_gap(rope, t.segments, *end);
+      } else if (!stay_on_rope(t, *end)) {
+        end->particle_count = 1;  // A single point is nothing to slide along: the hook goes, below.
+      }
+    }
+  }
+  const auto is_lost = [&](const Hook& hook) {
+    return hook.kind == HookKind::kRopeSlide && hook.a.object == object && hook.a.particle_count == 1;
+  };
+  remove_hooks_if(t, is_lost);
+  ++t.hook_revision;
+}
+
+/// Notes a segment that broke, and that its rope goes on as two.
+void divide(std::uint32_t object, std::uint32_t segment, state::Tables& t,
+            std::vector<RopeBreakEvent>& breaks) {
+  state::Deformable& rope = t.objects[object];
+  const std::uint32_t row = rope.segments.first + segment;
+  const std::uint32_t particle = rope.particles.first + segment;
+  const DVec3 ends = vector_cast<double>(t.particles.position[particle].x) +
+                     vector_cast<double>(t.particles.position[particle + 1].x);
+  breaks.push_back({.rope = t.rope_slots.id_of(rope.slot),
+                    .segment = segment,
+                    .point = rope.origin + 0.5 * ends,
+                    .force = t.segments.needed_force[row],
+                    .time = t.segments.broke_at[row]});
+  t.segments.hold[row] = state::SegmentHold::kGone;
+  t.segments.tension[row] = Real(0);
+  t.segments.limited[row] = 0;
+  rope.has_gaps = true;
+}
+
 }  // namespace
+
+void drop_broken_segments(WorldData& world) {
+  state::Tables& t = world.tables;
+  std::vector<RopeBreakEvent>& breaks = world.last_step.events.rope_breaks;
+  breaks.clear();
+  for (std::uint32_t object = 0; object < t.objects.size(); ++object) {
+    state::Deformable& rope = t.objects[object];
+    if (rope.kind != PointRef::Kind::kRope || !(rope.strength < kRigid)) continue;
+    const std::size_t before = breaks.size();
+    for (std::uint32_t i = 0; i < rope.segments.count; ++i) {
+      if (t.segments.hold[rope.segments.first + i] == state::SegmentHold::kBroken)
+        divide(object, i, t, breaks);
+    }
+    if (breaks.size() == before) continue;
+    move_hooks_off_gaps(object, t);
+    state::note_change(t, rope);
+  }
+  sort_by_time(breaks);
+}
 
 void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& t) {
   HOOKE_ASSERT(goes.size() == t.bodies.traits.size());

@@ -33,6 +33,11 @@ void relax_joints(WorldData& world, Real h);
 /// Removes the hooks that broke in this step, and lists them in order of time.
 void drop_broken_hooks(WorldData& world);
 
+/// Divides the ropes of which segments broke in this step, and lists these in order of time. Hooks within
+/// such a segment go to the point at which they had the larger share; one that slides along the rope stays on
+/// the part there, and goes if that part is a single point.
+void drop_broken_segments(WorldData& world);
+
 /// Removes the hooks of bodies before the bodies themselves are removed. `goes` says by body row which are.
 void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& tables);
 

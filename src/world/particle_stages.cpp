@@ -12,6 +12,7 @@
 #include "solver/surface/joined_solids.h"
 #include "solver/surface/surface_contacts.h"
 #include "state/check_tables.h"
+#include "state/rope_chains.h"
 #include "world/force_stages.h"
 
 #include <algorithm>
@@ -233,13 +234,18 @@ void refresh_derived(WorldData& world) {
   }
   world.frame.gas_volumes.resize(world.derived.gas_objects.size());
   world.derived.rope_systems.clear();
-  for (const state::Deformable& object : tables.objects) {
+  for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
+    const state::Deformable& object = tables.objects[i];
     if (object.kind != PointRef::Kind::kRope) continue;
-    world.derived.rope_systems.push_back({.first_particle = object.particles.first,
-                                          .node_count = object.particles.count,
-                                          .first_segment = object.segments.first,
-                                          .bend_stiffness = static_cast<double>(object.bend_stiffness),
-                                          .bend_damping = static_cast<double>(object.bend_damping)});
+    state::for_each_chain(object, tables.segments, [&](std::uint32_t first, std::uint32_t count) {
+      world.derived.rope_systems.push_back(
+          {.first_particle = object.particles.first + first,
+           .node_count = count,
+           .first_segment = object.segments.first + first,
+           .bend_stiffness = count > 2 ? static_cast<double>(object.bend_stiffness) : 0,
+           .bend_damping = static_cast<double>(object.bend_damping),
+           .object = i});
+    });
   }
   const auto count = static_cast<std::size_t>(tables.particles.count());
   world.frame.velocity_before.assign(count, state::VelocityRecord{});
@@ -409,7 +415,7 @@ void begin_coupled_groups(WorldData& world, Real h, bool first) {
                             world.frame.hooked_points);
 }
 
-void solve_ropes(WorldData& world, Real h, bool first) {
+void solve_ropes(WorldData& world, double end_time, Real h, bool first) {
   state::Tables& tables = world.tables;
   solver::remove_mass_shares(world.frame.hooked_points, tables.particles);
   solver::twist_nodes(world.frame.twist_rows, tables);
@@ -422,7 +428,7 @@ void solve_ropes(WorldData& world, Real h, bool first) {
   });
   for_ranges(*world.pool, static_cast<int>(world.derived.coupled_groups.count), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {
-      solver::solve_coupled_group(world.frame.velocity_before, {.h = h, .first = first},
+      solver::solve_coupled_group(world.frame.velocity_before, {.h = h, .end_time = end_time, .first = first},
                                   world.derived.coupled_groups.groups[i], world.derived.rope_systems,
                                   world.frame.body_contacts, tables);
     }

@@ -31,8 +31,9 @@ void solve_bends(WorldData& world);
 /// slide along ropes, and coupled groups are built. Their bodies get gravity and contact impulses in shares,
 /// and mass shares begin. `first` marks the first particle substep of a substep.
 void begin_coupled_groups(WorldData& world, Real h, bool first);
-/// Solves rope systems and coupled groups. `first` marks the first particle substep of a step.
-void solve_ropes(WorldData& world, Real h, bool first);
+/// Solves rope systems and coupled groups up to `end_time` [s]. `first` marks the first particle substep of a
+/// step.
+void solve_ropes(WorldData& world, double end_time, Real h, bool first);
 
 /// Solves solids, by tetrahedra or shape matching, and then the gas in closed cloths.
 void solve_solids(WorldData& world, Real h);

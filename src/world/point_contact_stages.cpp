@@ -17,6 +17,8 @@
 #include "solver/surface/surface_tuning.h"
 #include "state/check_contacts.h"
 
+#include <vector>
+
 namespace hooke::world {
 
 namespace {
@@ -32,10 +34,19 @@ collision::PassSubstep pass_substep(const state::Tables& t, Real h) {
   return {.h = h, .left = h * static_cast<Real>(t.desc.substeps * t.desc.particle_substeps), .first = true};
 }
 
+/// Removes contacts of bodies with segments of ropes that are gone.
+void remove_contacts_of_gaps(state::Tables& t) {
+  std::erase_if(t.element_contacts, [&](const state::ElementContact& contact) {
+    const state::Deformable& object = t.objects[contact.object];
+    return object.has_gaps && !t.segments.joins(contact.element);
+  });
+}
+
 }  // namespace
 
 void find_point_contacts(WorldData& world, double dt) {
   collision::find_contacts(dt, world.frame.particle_contacts, world.tables);
+  remove_contacts_of_gaps(world.tables);
   collision::find_rope_contacts(*world.pool, static_cast<Real>(dt), world.frame.rope_contacts, world.tables);
   collision::find_body_passes(world.tables, static_cast<Real>(dt), world.frame.body_passes);
   HOOKE_VALIDATE(state::find_in_point_contacts(world.tables));

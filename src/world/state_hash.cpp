@@ -80,6 +80,19 @@ void add_surface(StateHash& hash, const state::Deformable& object) {
   add(hash, object.surface.self_contact, filter.category, filter.mask, filter.group);
 }
 
+/// Adds whether segments hold, of ropes that can snap.
+void add_strength(StateHash& hash, const state::Deformable& object, const state::Segments& segments) {
+  if (!(object.strength < kRigid)) return;
+  hash.add(object.strength);
+  for (std::uint32_t row = object.segments.first; row < object.segments.end(); ++row)
+    hash.add(segments.hold[row]);
+}
+
+void add_segments(StateHash& hash, const state::Segments& s) {
+  add(hash, s.rest_length, s.stiffness, s.damping, s.length_limit, s.tension, s.mean_tension, s.limited,
+      s.clamped);
+}
+
 void add_objects(StateHash& hash, const Tables& t) {
   hash.add(t.objects.size());
   for (const state::Deformable& o : t.objects) {
@@ -90,12 +103,13 @@ void add_objects(StateHash& hash, const Tables& t) {
       add_rows(hash, rows);
     add_rest_form(hash, o);
     add_surface(hash, o);
+    add_strength(hash, o, t.segments);
   }
   add_columns(hash, t.particles);
   add_columns(hash, t.springs);
   add_columns(hash, t.bends);
   add_columns(hash, t.triangles);
-  add_columns(hash, t.segments);
+  add_segments(hash, t.segments);
   add_columns(hash, t.tetrahedra);
   for (const state::Pin& pin : t.pins) {
     add(hash, pin.object, pin.particle, pin.start, pin.start_time);

@@ -62,7 +62,7 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   world::give_back_passing_masses(w);
-  world::solve_ropes(w, h, first_of_step);
+  world::solve_ropes(w, end_time, h, first_of_step);
   world::solve_point_contacts(w, h);
   world::stop_body_passes(w, h);
   world::move_particles(w, h);
@@ -97,6 +97,7 @@ void finish(WorldData& w, double dt, StepReport& report) {
   world::clamp_to_impact_times(w);
   world::finish_bodies(w, static_cast<Real>(dt));
   world::drop_broken_hooks(w);
+  world::drop_broken_segments(w);
   world::put_to_sleep(w, static_cast<Real>(dt));
   world::gather_events(w);
   report.rows_quarantined += world::quarantine_non_finite(w);

@@ -79,6 +79,9 @@ void reset_contacts(WorldData& world) {
     hook.broken = false;
     hook.giving = state::Hook::Giving::kHolds;
   }
+  for (state::SegmentHold& hold : t.segments.hold) {
+    if (hold == state::SegmentHold::kBroken) hold = state::SegmentHold::kHolds;
+  }
   state::note_change_of_all(t);  // Copies of rows that yield may be half changed.
   ++t.hook_revision;
   world.derived.broad_phase_stale = true;

@@ -77,7 +77,7 @@ struct Derived {
   solver::SoftGroups soft;                     ///< Copies of springs, bends, tetrahedra and triangles.
   std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are solved by shape matching.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
-  std::vector<solver::RopeSystem> rope_systems;  ///< One per rope, in order of creation.
+  std::vector<solver::RopeSystem> rope_systems;  ///< One per chain of a rope, in order of creation.
   solver::CoupledGroups coupled_groups;  ///< Ropes with the hooks, points and bodies that they depend on.
   std::uint64_t clamps_revision = 0;     ///< Sum of `revision` and `hook_revision`, both of which only grow.
 

@@ -160,6 +160,7 @@ RopeDesc make_rope(Random& random, DVec3 place, Taste taste) {
   if (random.chance(0.3)) rope.inner_friction = scaled(random, 0.3);
   if (random.chance(0.3)) rope.air_friction = random.real(0, 1);
   if (random.chance(0.3)) rope.extension_max = random.real(0.01, 0.3);
+  if (random.chance(0.2)) rope.strength = random.real(0.1, 500);
   if (random.chance(0.2)) rope.stiffness_of = RopeDesc::StiffnessOf::kSegment;
   if (random.chance(0.3)) make_bendy(random, rope, taste);
   rope.pins = make_pins(random, static_cast<std::size_t>(rope.masses), taste);

@@ -59,6 +59,7 @@ TEST_SUITE("world/api") {
          {"rope.extension_max", [](RopeDesc& d, Real v) { d.extension_max = v; }, true},
          {"rope.radius", [](RopeDesc& d, Real v) { d.radius = v; }},
          {"rope.axial_stiffness", [](RopeDesc& d, Real v) { d.axial_stiffness = v; }, true},
+         {"rope.strength", [](RopeDesc& d, Real v) { d.strength = v; }},
          {"rope.loads[0].mass",
           [](RopeDesc& d, Real v) {
             d.loads = {{3, v}};

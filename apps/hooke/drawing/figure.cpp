@@ -251,11 +251,21 @@ void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& 
   if (place.points.empty()) return;
   const Finish& finish = figure.ranges.front().finish;
   const float radius = visible_radius(figure.radius, place.points[place.points.size() / 2], place);
-  list.ropes.push_back({{place.points.begin(), place.points.end()},
-                        radius,
-                        finish.color,
-                        finish.shininess,
-                        specular_of(finish.shininess)});
+  std::size_t first = 0;
+  const auto add_until = [&](std::size_t end) {
+    const auto points = place.points.begin();
+    if (end - first > 1) {
+      list.ropes.push_back(
+          {{points + static_cast<std::ptrdiff_t>(first), points + static_cast<std::ptrdiff_t>(end)},
+           radius,
+           finish.color,
+           finish.shininess,
+           specular_of(finish.shininess)});
+    }
+    first = end;
+  };
+  for (const std::uint32_t gap : place.gaps) add_until(gap + 1);
+  add_until(place.points.size());
 }
 
 void add_loads(const Figure& figure, const FigurePlace& place, render::DrawList& list) {

@@ -81,6 +81,7 @@ struct FigurePlace {
   Vec3 position = {};
   Quat rotation = {};
   std::span<const Vec3> points = {};
+  std::span<const std::uint32_t> gaps = {};  ///< Segments of a rope that have broken, in ascending order.
   float pixel = 0;  ///< Size that one pixel covers at a distance of one meter from `eye` [m].
   Vec3 eye = {};
 };

@@ -56,6 +56,7 @@ void copy_place(const World& world, const SceneObject& object, ObjectState& stat
     const PointView points = positions_of(world, object);
     state.points.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
+    if (object.kind == SceneObject::Kind::kRope) state.gaps = world.broken_segments(object.rope);
   }
 }
 

@@ -18,8 +18,9 @@ namespace hooke::app {
 /// Where one object of a picture is.
 struct ObjectState {
   std::shared_ptr<Figure> figure;
-  std::vector<DVec3> points;  ///< Set for a deformable object.
-  Pose pose;                  ///< Set for a body.
+  std::vector<DVec3> points;        ///< Set for a deformable object.
+  std::vector<std::uint32_t> gaps;  ///< Segments of a rope that have broken.
+  Pose pose;                        ///< Set for a body.
 };
 
 /// What a picture shows of a simulation at one time. It is free of the simulation, so that another thread may

@@ -87,6 +87,7 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
     here.position = local(object.pose.position);
     here.rotation = object.pose.rotation;
     here.points = points;
+    here.gaps = object.gaps;
     add_figure(*object.figure, here, list);
     if (!object.figure->solids.empty() && !object.figure->half_space) {
       add_bounds(*object.figure, here, bounded++, list);
@@ -119,6 +120,7 @@ void SceneDrawing::add_trail(const DVec3& origin, const FigurePlace& place, rend
       points.clear();
       for (const DVec3& point : object.points) points.push_back(vector_cast<float>(point - origin));
       left.points = points;
+      left.gaps = object.gaps;
       add_figure(*object.figure, left, list);
     }
   }

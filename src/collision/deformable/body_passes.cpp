@@ -183,6 +183,7 @@ class PassSearch {
         continue;
       }
       const Passes::Element& e = f_.elements[i];
+      if (is_gap(row, k)) continue;
       if (overlap(near, box_of(t_, e)) && may_touch(e, body)) f_.candidates.push_back({.element = i});
     }
     const auto end = static_cast<std::uint32_t>(f_.candidates.size());
@@ -192,6 +193,13 @@ class PassSearch {
     pair.friction = std::sqrt(t_.objects[row].friction * surface.friction);
     pair.inset = inset_of(body, object.longest);
     f_.pairs.push_back(pair);
+  }
+
+  /// Whether the element is a segment of a rope that has broken.
+  [[nodiscard]] bool is_gap(std::uint32_t row, std::uint32_t element) const {
+    const state::Deformable& object = t_.objects[row];
+    return object.has_gaps && element < object.segments.count &&
+           !t_.segments.joins(object.segments.first + element);
   }
 
   /// Bodies wider than an element are carried by points, between which chords cut into them.

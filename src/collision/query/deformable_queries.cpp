@@ -87,7 +87,10 @@ class Form {
     return 0;
   }
   [[nodiscard]] std::array<std::uint32_t, 3> corners_of(std::uint32_t element) const {
-    if (object_->kind == Kind::kRope) return {element, element + 1, element};
+    if (object_->kind == Kind::kRope) {
+      const bool joins = tables_.segments.joins(object_->segments.first + element);
+      return {element, joins ? element + 1 : element, element};  // else the point before the gap
+    }
     if (object_->kind == Kind::kParticles) return {element, element, element};
     if (object_->kind == Kind::kSolid) return object_->skin->triangles[element];
     const auto [a, b, c] = tables_.triangles.corners[object_->triangles.first + element];

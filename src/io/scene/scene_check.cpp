@@ -25,7 +25,17 @@ struct NamedObject {
 };
 
 /// A Subject is what a quantity is measured on.
-enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kHookOrRope, kHookOrWorld };
+enum class Subject : std::uint8_t {
+  kWorld,
+  kObject,
+  kPoint,
+  kRope,
+  kBody,
+  kHook,
+  kHookOrRope,
+  kHookOrWorld,
+  kHookRopeOrWorld
+};
 
 class Checker {
  public:
@@ -490,8 +500,9 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
     case Quantity::kWay:
       return Subject::kHook;
     case Quantity::kGap:
-    case Quantity::kBroken:
       return Subject::kHookOrWorld;
+    case Quantity::kBroken:
+      return Subject::kHookRopeOrWorld;
     default:
       return Subject::kWorld;
   }
@@ -507,6 +518,8 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
   if (subject == Subject::kHookOrRope) subject = object.kind == Kind::kRope ? Subject::kRope : Subject::kHook;
   if (subject == Subject::kHook || subject == Subject::kHookOrWorld) {
     if (object.kind != Kind::kHook) wrong(" is not a hook");
+  } else if (subject == Subject::kHookRopeOrWorld) {
+    if (object.kind != Kind::kHook && object.kind != Kind::kRope) wrong(" is neither a hook nor a rope");
   } else if (subject == Subject::kBody) {
     if (!body) wrong(" is not a body");
   } else if (!has_points(object.kind) && !(body && subject == Subject::kPoint)) {
@@ -540,7 +553,7 @@ void Checker::check_expectation(const SceneExpectation& expectation, const std::
     return;
   }
   if (expectation.of.empty()) {
-    if (subject == Subject::kHookOrWorld) return;
+    if (subject == Subject::kHookOrWorld || subject == Subject::kHookRopeOrWorld) return;
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'of', the name of an object");
     return;
   }

@@ -88,6 +88,7 @@ double extension_of(const World& world, const SceneObject& object) {
   if (view.empty()) return kNothing;
   double sum = 0;
   for (std::size_t i = 1; i < view.size(); ++i) sum += length(view[i] - view[i - 1]);
+  for (const std::uint32_t i : world.broken_segments(object.rope)) sum -= length(view[i + 1] - view[i]);
   return sum - object.rest_length;
 }
 
@@ -125,6 +126,8 @@ double object_figure(const SimulationData& data, const SceneObject& object, cons
       return extreme_height(data, object, wanted.quantity == Quantity::kHighest);
     case Quantity::kExtension:
       return extension_of(world, object);
+    case Quantity::kBroken:
+      return static_cast<double>(world.broken_segments(object.rope).size());
     case Quantity::kTension:
     case Quantity::kTwist:
     case Quantity::kTorque:
@@ -163,8 +166,12 @@ double world_figure(const SimulationData& data, Quantity quantity) {
     case Quantity::kGap:
       return measured.largest_gap;
     case Quantity::kBroken:
-      return static_cast<double>(std::count_if(data.objects.begin(), data.objects.end(),
-                                               [](const SceneObject& object) { return object.broken; }));
+      return std::accumulate(data.objects.begin(), data.objects.end(), 0.0,
+                             [&](double sum, const SceneObject& object) {
+                               const bool is_rope = object.kind == SceneObject::Kind::kRope;
+                               const std::size_t segments = data.world.broken_segments(object.rope).size();
+                               return sum + (is_rope ? static_cast<double>(segments) : object.broken ? 1 : 0);
+                             });
     default:
       return kNothing;
   }

@@ -175,6 +175,18 @@ Loaded<std::unique_ptr<SimulationData>> build(Scene scene, const Placement& plac
   return loaded;
 }
 
+/// Notes the first break of each rope that snapped.
+void note_snapped_ropes(SimulationData& data) {
+  for (const RopeBreakEvent& event : data.world.events().rope_breaks) {
+    const auto object = std::find_if(data.objects.begin(), data.objects.end(),
+                                     [&](const SceneObject& one) { return one.rope == event.rope; });
+    if (object == data.objects.end() || object->broken) continue;
+    data.saved_objects = nullptr;
+    object->broken = true;
+    object->broke = {.force = event.force, .time = event.time};
+  }
+}
+
 void note_broken_hooks(SimulationData& data) {
   const std::vector<BreakEvent>& breaks = data.world.events().breaks;
   if (breaks.empty()) return;
@@ -222,6 +234,7 @@ StepReport Simulation::step() {
   apply_due_events(*data_);
   const StepReport report = data_->world.step(data_->scene.dt);
   note_broken_hooks(*data_);
+  note_snapped_ropes(*data_);
   data_->contacts = report.contacts;
   if (report.moved) evaluate_due(*data_);
   return report;

@@ -167,6 +167,8 @@ std::vector<Field> rope_rows() {
                                             "Viscous drag of the whole rope, shared out by length."),
       field<kDesc, &RopeDesc::extension_max>("extension_max", "", kPositiveOrRigid,
                                              "Largest relative extension of a segment, such as 0.05."),
+      field<kDesc, &RopeDesc::strength>("strength", "N", kPositive,
+                                        "Takes no more tension, and snaps if it needs more; any by default."),
       field<kDesc, &RopeDesc::stiffness_of>("stiffness_of", "", kAny,
                                             "Of the rope, whatever the number of points; or of each segment, "
                                             "as in the paper: more points make a "

@@ -143,6 +143,7 @@ Result<void> System::add_segments(const state::Tables& tables, const state::Defo
   bool limits = false;
   for (std::uint32_t i = 0; i < object.segments.count; ++i) {
     const std::size_t row = object.segments.first + i;
+    if (!s.joins(row)) continue;
     if (std::isinf(s.stiffness[row])) return rigid(object, "segment", i);
     limits = limits || !std::isinf(s.length_limit[row]);
     springs_.push_back(
@@ -182,6 +183,7 @@ void System::add_air(const state::Tables& tables, const state::Deformable& objec
         {.at = {a - first, b - first, c - first}, .density = density, .drag = drag, .lift = lift});
   }
   for (std::uint32_t i = 0; i < object.segments.count; ++i) {
+    if (!tables.segments.joins(object.segments.first + i)) continue;
     const double length = number(tables.segments.rest_length[object.segments.first + i]);
     strands_.push_back({.at = {i, i + 1}, .half_rho_area = density * drag * radius_[i] * length});
   }

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "solver/air/air_kernels.h"
+#include "state/rope_chains.h"
 
 namespace hooke::solver {
 
@@ -73,13 +74,16 @@ void push_particles(const AirLoads& loads, parallel::Range range, state::Particl
 
 void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,
                    state::Particles& particles) {
-  wide::push_segments({.first_particle = object.particles.first,
-                       .count = object.segments.count,
-                       .rest_length = segments.rest_length.data() + object.segments.first,
-                       .position = reinterpret_cast<const Real*>(particles.position.data()),
-                       .wind = reinterpret_cast<const Real*>(air.wind.data()),
-                       .velocity = reinterpret_cast<Real*>(particles.velocity.data()),
-                       .strength = air.h * air.density * object.drag_coefficient});
+  state::for_each_chain(object, segments, [&](std::uint32_t first, std::uint32_t count) {
+    if (count < 2) return;
+    wide::push_segments({.first_particle = object.particles.first + first,
+                         .count = count - 1,
+                         .rest_length = segments.rest_length.data() + object.segments.first + first,
+                         .position = reinterpret_cast<const Real*>(particles.position.data()),
+                         .wind = reinterpret_cast<const Real*>(air.wind.data()),
+                         .velocity = reinterpret_cast<Real*>(particles.velocity.data()),
+                         .strength = air.h * air.density * object.drag_coefficient});
+  });
 }
 
 }  // namespace hooke::solver

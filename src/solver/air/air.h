@@ -59,8 +59,8 @@ void gather_loads(const state::Particles& particles, Real share, parallel::Range
 /// Adds the changes that gather_loads found. `range` counts particles of the world.
 void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles);
 
-/// Applies drag to the segments of one rope: F = rho C_d d L |u_t| u_t / 2, where u_t is u across the
-/// segment. Half of it goes to each end, limited as above.
+/// Applies drag to the segments of one rope that are not gone: F = rho C_d d L |u_t| u_t / 2, where u_t is u
+/// across the segment. Half of it goes to each end, limited as above.
 void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,
                    state::Particles& particles);
 

@@ -24,6 +24,12 @@ struct ContactForce {
   DVec3 friction;
 };
 
+/// The segment of a rope that needs most over what it can take.
+struct WeakestSegment {
+  double need = 0;  ///< The one over the other; it gives way from 1 on.
+  GivingSegment segment = {};
+};
+
 class CoupledGroupSolution {
  public:
   CoupledGroupSolution(double h, CoupledGroup& group, BodyContacts& contacts, state::Tables& tables)
@@ -31,9 +37,12 @@ class CoupledGroupSolution {
 
   void load_and_solve(const std::vector<state::VelocityRecord>& before,
                       std::vector<RopeSystem>& rope_systems);
-  /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything must be loaded and run again.
-  [[nodiscard]] bool gives_way(int round);
+  /// Whether hooks or segments of ropes give way (solver/joint/hook_breaks.h, solver/rope/segment_breaks.h),
+  /// so that everything must be loaded and run again.
+  [[nodiscard]] bool gives_way(int round, const std::vector<RopeSystem>& rope_systems);
   void store(const std::vector<RopeSystem>& rope_systems);
+  /// Breaks the segments that gave way, at this time [s].
+  void break_segments(double time);
   void remove_overlaps(const std::vector<RopeSystem>& rope_systems);
 
  private:
@@ -50,6 +59,10 @@ class CoupledGroupSolution {
   [[nodiscard]] bool gains_energy() const;
   void calm_contacts();
   void calm_coupled_contacts();
+  // Segments that break.
+  void apply_dashpots(const std::vector<RopeSystem>& rope_systems);
+  [[nodiscard]] bool set_segment_dashpots(const std::vector<RopeSystem>& rope_systems);
+  [[nodiscard]] WeakestSegment weakest_segment(const std::vector<RopeSystem>& rope_systems) const;
   // Loading and checking.
   void load_points();
   void load_hooks();

@@ -7,7 +7,6 @@
 #include "math/rotation.h"
 #include "solver/coupled/coupled_group_solution.h"
 #include "solver/coupled/coupled_tuning.h"
-#include "solver/joint/hook_breaks.h"
 #include "solver/joint_rows/geometric_stiffness.h"
 #include "solver/soft/particle_contact_solve.h"
 
@@ -38,6 +37,7 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
     b_.settings.push_back(first_setting(first, first_segment, first_contact_row, b_.ropes));
     b_.rope_node_counts.push_back(rope_systems[c].node_count);
   }
+  apply_dashpots(rope_systems);
   HOOKE_ASSERT(b_.moving.size() == b_.bodies.size());
   load_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
@@ -396,25 +396,6 @@ void CoupledGroupSolution::run_calmly(std::vector<RopeSystem>& rope_systems) {
   (void)update_coupled_contacts(true);
 }
 
-bool CoupledGroupSolution::gives_way(int round) {
-  b_.breakable.clear();
-  for (const std::uint32_t row : b_.hooks) {
-    if (t_.hooks[row].can_break() && !t_.hooks[row].broken) b_.breakable.push_back(row);
-  }
-  if (b_.breakable.empty() || !is_sound()) return false;
-  return give_way(h_, b_.breakable, round, t_.hooks, [&](std::uint32_t hook) -> HookLoad {
-    const auto i = std::lower_bound(b_.hooks.begin(), b_.hooks.end(), hook) - b_.hooks.begin();
-    HOOKE_ASSERT(i < std::ssize(b_.hooks) && b_.hooks[static_cast<std::size_t>(i)] == hook);
-    DVec3 linear;
-    DVec3 angular;
-    for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row) {
-      linear += b_.lambda[row] * b_.rows[row].n;
-      angular += b_.lambda[row] * b_.rows[row].axis;
-    }
-    return {length(linear), length(angular)};
-  });
-}
-
 void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
   if (!is_sound()) return;
   std::size_t node = 0;
@@ -457,10 +438,13 @@ void solve_coupled_group(const std::vector<state::VelocityRecord>& before, const
                          CoupledGroup& group, std::vector<RopeSystem>& rope_systems, BodyContacts& contacts,
                          state::Tables& tables) {
   group.factored = 0;
+  group.giving.clear();
   CoupledGroupSolution solution(static_cast<double>(substep.h), group, contacts, tables);
   solution.load_and_solve(before, rope_systems);
-  for (int round = 0; solution.gives_way(round); ++round) solution.load_and_solve(before, rope_systems);
+  for (int round = 0; solution.gives_way(round, rope_systems); ++round)
+    solution.load_and_solve(before, rope_systems);
   solution.store(rope_systems);
+  solution.break_segments(substep.end_time);
   if (substep.first) solution.remove_overlaps(rope_systems);
 }
 

@@ -11,6 +11,7 @@
 #include "solver/linear/block_matrix.h"
 #include "solver/rope/rope_rows.h"
 #include "solver/rope/rope_systems.h"
+#include "solver/rope/segment_breaks.h"
 #include "state/tables.h"
 
 #include <array>
@@ -179,6 +180,7 @@ struct CoupledGroup {
   std::vector<double> unfelt;            ///< What was taken out of it because no body feels it.
   std::vector<BodyRow> start;            ///< (1 + G) V0 of each body.
   std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
+  std::vector<GivingSegment> giving;     ///< Segments that give way in this substep.
   // Contacts of two bodies. Velocities are six numbers V for each of `bodies`.
   DirectRows direct;
   std::vector<double> free;       ///< Velocities without these contacts, hooks and ropes.
@@ -254,8 +256,9 @@ void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles
 
 /// A particle substep.
 struct ParticleSubstep {
-  Real h = Real(0);    ///< Its length [s].
-  bool first = false;  ///< It is the first of its step.
+  Real h = Real(0);     ///< Its length [s].
+  double end_time = 0;  ///< Time of the world at its end [s].
+  bool first = false;   ///< It is the first of its step.
 };
 
 /// Solves for the velocities of everything in a coupled group in a particle substep. `before` holds the

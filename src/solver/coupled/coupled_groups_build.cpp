@@ -8,6 +8,7 @@
 #include "solver/coupled/coupled_groups.h"
 #include "solver/coupled/coupled_tuning.h"
 #include "solver/soft/element_contact_solve.h"
+#include "state/rope_chains.h"
 
 #include <algorithm>
 #include <limits>
@@ -61,7 +62,7 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
   }
 }
 
-/// Disjoint sets of bodies, then particles. A rope is represented by its first particle.
+/// Disjoint sets of bodies, then particles. A chain of a rope is represented by its first particle.
 class Membership {
  public:
   Membership(const Tables& t, base::DisjointSets& sets) : tables_(t), sets_(sets) {
@@ -113,7 +114,8 @@ class Membership {
   }
   std::uint32_t of_particle(std::uint32_t object, std::uint32_t particle) {
     const state::Deformable& owner = tables_.objects[object];
-    const std::uint32_t first = owner.kind == PointRef::Kind::kRope ? owner.particles.first : particle;
+    const bool is_rope = owner.kind == PointRef::Kind::kRope;
+    const std::uint32_t first = is_rope ? state::first_of_chain(owner, tables_.segments, particle) : particle;
     return sets_.root(static_cast<std::uint32_t>(tables_.bodies.motion.size()) + first);
   }
 
@@ -178,8 +180,9 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks,
   }
 }
 
-/// Marks the sets that are coupled groups.
-void mark_coupled(const Tables& t, Membership& membership, std::vector<std::uint8_t>& coupled) {
+/// Marks the sets that are coupled groups. Ropes that can snap are: only there do segments give way.
+void mark_coupled(const Tables& t, const std::vector<RopeSystem>& rope_systems, Membership& membership,
+                  std::vector<std::uint8_t>& coupled) {
   coupled.assign(t.bodies.motion.size() + t.particles.position.size(), 0);
   for (const Hook& hook : t.hooks) {
     if (hook.holds_point() ? !may_be_anchor(t, hook) : hook.route == state::JointRoute::kCoupled)
@@ -195,6 +198,10 @@ void mark_coupled(const Tables& t, Membership& membership, std::vector<std::uint
     coupled[membership.of_manifold(manifold)] = 1;
   for (const state::RopeContact& contact : t.rope_contacts) {
     if (contact.joined) coupled[membership.of_rope_contact(contact)] = 1;
+  }
+  for (const RopeSystem& rope_system : rope_systems) {
+    const bool can_snap = t.objects[rope_system.object].strength < kRigid && rope_system.node_count > 1;
+    if (can_snap) coupled[membership.of_particle(rope_system.object, rope_system.first_particle)] = 1;
   }
 }
 
@@ -263,17 +270,14 @@ class MemberSort {
     }
   }
 
-  /// Adds the rope systems to the groups that hooks and contacts have made, and marks those that have one.
+  /// Adds the rope systems to the groups that hooks and contacts have made, or to groups of their own if they
+  /// can snap, and marks those that have one.
   void add_rope_systems(std::vector<RopeSystem>& rope_systems) {
-    std::uint32_t rope_system = 0;
-    for (std::uint32_t o = 0; o < tables_.objects.size(); ++o) {
-      if (tables_.objects[o].kind != PointRef::Kind::kRope) continue;
-      const std::uint32_t set_root = membership_.of_particle(o, tables_.objects[o].particles.first);
-      HOOKE_ASSERT(rope_system < rope_systems.size());  // one for each rope
-      const std::uint32_t group = group_of()[set_root];
-      rope_systems[rope_system].in_coupled_group = group != kNone;
-      if (group != kNone) groups_.groups[group].rope_systems.push_back(rope_system);
-      ++rope_system;
+    for (std::uint32_t i = 0; i < rope_systems.size(); ++i) {
+      RopeSystem& rope_system = rope_systems[i];
+      const std::uint32_t set_root = membership_.of_particle(rope_system.object, rope_system.first_particle);
+      rope_system.in_coupled_group = groups_.scratch.coupled[set_root] != 0;
+      if (rope_system.in_coupled_group) group_at(set_root).rope_systems.push_back(i);
     }
   }
 
@@ -303,7 +307,7 @@ class MemberSort {
 /// one. Contacts of points come before those between bodies. Hooks that are anchors go to `scratch.anchors`.
 void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, CoupledGroups& groups) {
   Membership membership(t, groups.scratch.sets);
-  mark_coupled(t, membership, groups.scratch.coupled);
+  mark_coupled(t, rope_systems, membership, groups.scratch.coupled);
   MemberSort members(t, membership, groups);
   members.add_hooks();
   members.add_contacts();

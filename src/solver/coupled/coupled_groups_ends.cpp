@@ -31,39 +31,43 @@ struct Line {
     const double square = length_squared(d);
     return square > 0 ? dot(x - at(i), d) / square : 0;
   }
-  /// Direction from the node before to the node behind; the ends have one neighbor only.
+  /// Whether `node` and the next are joined.
+  [[nodiscard]] bool goes_on(std::uint32_t node) const {
+    return node < rope.segments.count &&
+           t.segments.hold[rope.segments.first + node] != state::SegmentHold::kGone;
+  }
+  /// Direction from the node before to the node behind; the ends of a chain have one neighbor only.
   [[nodiscard]] DVec3 tangent(std::uint32_t node) const {
-    const std::uint32_t last = rope.particles.count - 1;
-    return normalize(at(std::min(node + 1, last)) - at(node > 0 ? node - 1 : 0));
+    const std::uint32_t before = node > 0 && goes_on(node - 1) ? node - 1 : node;
+    return normalize(at(goes_on(node) ? node + 1 : node) - at(before));
   }
 };
 
-/// The segment whose line has x beside it. The search goes from segment `i` toward x.
+/// The segment whose line has x beside it. The search goes from segment `i` toward x, within a chain.
 std::uint32_t find_segment(const Line& line, std::uint32_t i, DVec3 x) {
   HOOKE_ASSERT(i < line.rope.segments.count);
-  const std::uint32_t last = line.rope.segments.count - 1;
   const bool onward = line.share(i, x) > 1;
   if (onward) {
-    while (i < last && line.share(i, x) > 1) ++i;
+    while (line.goes_on(i + 1) && line.share(i, x) > 1) ++i;
   } else {
-    while (i > 0 && line.share(i, x) < 0) --i;
+    while (i > 0 && line.goes_on(i - 1) && line.share(i, x) < 0) --i;
   }
   return i;
 }
 
-/// How far the hook may slide along the rope, as limits of its freedom.
-HookLimits limits_along(const Tables& t, const state::Deformable& rope, std::uint32_t segment, double share) {
+/// How far the hook may slide along its chain of the rope, as limits of its freedom.
+HookLimits limits_along(const Line& line, std::uint32_t segment, double share) {
   double before = 0;
   double behind = 0;
-  for (std::uint32_t i = 0; i < rope.segments.count; ++i) {
-    const auto rest = static_cast<double>(t.segments.rest_length[rope.segments.first + i]);
-    if (i < segment) before += rest;
-    if (i > segment) behind += rest;
-    if (i == segment) {
-      before += share * rest;
-      behind += (1 - share) * rest;
-    }
-  }
+  const auto rest_of = [&](std::uint32_t i) {
+    return static_cast<double>(line.t.segments.rest_length[line.rope.segments.first + i]);
+  };
+  std::uint32_t first = segment;
+  while (first > 0 && line.goes_on(first - 1)) --first;
+  for (std::uint32_t i = first; i < segment; ++i) before += rest_of(i);
+  before += share * rest_of(segment);
+  behind += (1 - share) * rest_of(segment);
+  for (std::uint32_t i = segment + 1; line.goes_on(i); ++i) behind += rest_of(i);
   return {static_cast<Real>(-before), static_cast<Real>(behind)};
 }
 
@@ -79,7 +83,7 @@ void slide(const Tables& t, Hook& hook) {
   hook.a.particle[1] = hook.a.particle[0] + 1;
   hook.a.weight[0] = static_cast<Real>(1 - share);
   hook.a.weight[1] = static_cast<Real>(share);
-  hook.freedom[0].limits = limits_along(t, rope, segment, share);
+  hook.freedom[0].limits = limits_along(line, segment, share);
 }
 
 /// 1 / mass of what holds the other end, if it has `shares` such hooks; a mean over directions [1/kg].

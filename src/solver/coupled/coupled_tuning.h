@@ -214,4 +214,17 @@ inline constexpr int kFewestFactorizations = 4;
 /// segment touches all others ask for a matrix of 45 GB. No measurement of the value itself is recorded.
 inline constexpr std::size_t kMostRopeContacts = 8;
 
+// Which segments of ropes break together.
+
+/// Most segments of a group that give way in one substep; the rest hold until the next. Each costs three
+/// solutions. Smaller: of many ropes that are loaded at once, some carry more than they can for a substep.
+/// Larger: such a substep takes long. Chosen by hand; no measurement is recorded.
+inline constexpr std::size_t kMostSegmentBreaks = 16;
+
+/// How much more than its strength a segment may carry in a substep in which another one of its rope gives
+/// way [ratio]. Smaller: a rope that a falling load stretches breaks in up to four places at once, as each
+/// needs 2 to 5 % more than its strength while the first passes on just that. Larger: ropes that are pulled
+/// at both ends carry more than they can.
+inline constexpr double kSparedNeed = 1.2;
+
 }  // namespace hooke::solver

@@ -33,9 +33,23 @@ struct HookLoad {
   double angular_impulse = 0;  ///< [N m s]
 };
 
-/// Checks the hooks of `rows` after a solution that gave load_of(hook row). Of the hooks that need too much,
-/// those that need most give way. The dashpots of those that gave way before are set. `round` counts calls in
-/// a substep of length h [s]. True if the solution must be repeated.
+/// Sets the dashpots of the hooks of `rows` that gave way before, after a solution that gave load_of(hook
+/// row). True if the solution must be repeated.
+template <class LoadOf>
+bool set_dashpots(std::span<const std::uint32_t> rows, std::vector<state::Hook>& hooks, LoadOf&& load_of);
+
+/// What the weakest of the hooks of `rows` needs in a substep of length h [s] over what it can take.
+template <class LoadOf>
+[[nodiscard]] double most_need(double h, std::span<const std::uint32_t> rows,
+                               const std::vector<state::Hook>& hooks, LoadOf&& load_of);
+
+/// Lets the hooks give way that need too much. In the first rounds only those do that need about `most`.
+template <class LoadOf>
+void let_most_go(double h, std::span<const std::uint32_t> rows, int round, double most,
+                 std::vector<state::Hook>& hooks, LoadOf&& load_of);
+
+/// All of this: of the hooks that need too much, those that need most give way. `round` counts calls in a
+/// substep of length h [s]. True if the solution must be repeated.
 template <class LoadOf>
 [[nodiscard]] bool give_way(double h, std::span<const std::uint32_t> rows, int round,
                             std::vector<state::Hook>& hooks, LoadOf&& load_of);
@@ -94,22 +108,40 @@ void let_go(double h, double need, const HookLoad& load, state::Hook& hook);
 bool set_dashpot(const HookLoad& load, state::Hook& hook);
 
 template <class LoadOf>
-bool give_way(double h, std::span<const std::uint32_t> rows, int round, std::vector<state::Hook>& hooks,
-              LoadOf&& load_of) {
+bool set_dashpots(std::span<const std::uint32_t> rows, std::vector<state::Hook>& hooks, LoadOf&& load_of) {
   bool set = false;
   for (const std::uint32_t row : rows) {
     set = set_dashpot(load_of(row), hooks[row]) || set;
   }
-  if (set) return true;
+  return set;
+}
+
+template <class LoadOf>
+double most_need(double h, std::span<const std::uint32_t> rows, const std::vector<state::Hook>& hooks,
+                 LoadOf&& load_of) {
   double most = 0;
   for (const std::uint32_t row : rows) most = std::max(most, need_of(hooks[row], load_of(row), h));
-  if (!(most > 1)) return false;
+  return most;
+}
+
+template <class LoadOf>
+void let_most_go(double h, std::span<const std::uint32_t> rows, int round, double most,
+                 std::vector<state::Hook>& hooks, LoadOf&& load_of) {
   const double least = round < kMostBreakRounds ? std::max(1.0, kAlikeInNeed * most) : 1;
   for (const std::uint32_t row : rows) {
     const HookLoad load = load_of(row);
     const double need = need_of(hooks[row], load, h);
     if (need > 1 && need >= least) let_go(h, need, load, hooks[row]);
   }
+}
+
+template <class LoadOf>
+bool give_way(double h, std::span<const std::uint32_t> rows, int round, std::vector<state::Hook>& hooks,
+              LoadOf&& load_of) {
+  if (set_dashpots(rows, hooks, load_of)) return true;
+  const double most = most_need(h, rows, hooks, load_of);
+  if (!(most > 1)) return false;
+  let_most_go(h, rows, round, most, hooks, load_of);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "solver/rope/rope_segments.h"
 #include "solver/rope/rope_tuning.h"
+#include "solver/rope/segment_breaks.h"
 #include "solver/soft/particle_contact_solve.h"
 
 #include <algorithm>
@@ -16,6 +17,7 @@ using V = DVec3;
 using M = math::Symmetric3<double>;
 
 constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
+constexpr double kNoBend = 1e30;          ///< Compliance of a bend that bends nothing [1/(kg m^2)].
 
 V across(V n, V v) {
   return v - dot(n, v) * n;
@@ -207,15 +209,16 @@ wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, doub
   const auto c = static_cast<double>(segments.damping[row]);
   const double s = c + h * k;
   const bool rigid = k > kLargestFinite;
-  return {.rest = rest,
-          .per_rest = 1 / rest,
-          .limit = limit,
-          .damping = c,
-          .per_stiffness = 1 / k,
-          .bias = rigid ? 1 / h : k / s,
-          .resistance = h * s,
-          .lighter = lighter,
-          .per_lighter = 1 / lighter};
+  const wide::SegmentTraits<double> traits = {.rest = rest,
+                                              .per_rest = 1 / rest,
+                                              .limit = limit,
+                                              .damping = c,
+                                              .per_stiffness = 1 / k,
+                                              .bias = rigid ? 1 / h : k / s,
+                                              .resistance = h * s,
+                                              .lighter = lighter,
+                                              .per_lighter = 1 / lighter};
+  return segments.joins(row) ? traits : dashpot_traits(0, traits);
 }
 
 void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
@@ -277,6 +280,7 @@ RopeBend load_bend(const RopeSystem& rope_system, std::size_t row, const state::
   bend.before = 1 / before;
   bend.behind = 1 / behind;
   bend.stiffness = rope_system.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
+  if (!segments.joins(row) || !segments.joins(row + 1)) bend.stiffness = 0;
   bend.damping = rope_system.bend_damping * bend.stiffness;
   return bend;
 }
@@ -300,6 +304,11 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
   const auto line = [&](int i) {
     return node[i + 1].x - node[i].x - back * (node[i + 1].v_before - node[i].v_before);
   };
+  if (!(resistance > 0)) {  // beside a segment that breaks
+    bend.gamma = kNoBend;
+    bend.target = {};
+    return;
+  }
   bend.gamma = 1 / (h * resistance);
   bend.target = (-bend.stiffness / resistance) * (bend.behind * line(0) - bend.before * line(-1));
 }

@@ -130,7 +130,7 @@ void load_point_contact_rows(const PointInContact& point, double h, const state:
                              std::vector<RopeContactRow>& contact_rows);
 
 /// Loads the bend between the segments of `row` and the next. At a clamp (solver/rope/rope_clamps.h) only
-/// half a segment bends.
+/// half a segment bends, and beside a segment that has broken nothing does.
 [[nodiscard]] RopeBend load_bend(const RopeSystem& rope_system, std::size_t row,
                                  const state::Segments& segments);
 

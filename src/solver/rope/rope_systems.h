@@ -16,7 +16,8 @@ struct RopeAnchor {
   bool node_is_b = false;  ///< Whether the node is the hook's end b; else it is end a.
 };
 
-/// One rope as the solver sees it. Its nodes are particles [first_particle, first_particle + node_count), its
+/// One chain of a rope (state/rope_chains.h) as the solver sees it: all of the rope, unless it has snapped.
+/// Its nodes are particles [first_particle, first_particle + node_count), its
 /// segments rows [first_segment, first_segment + node_count - 1), its contacts rows [first_contact,
 /// end_contact), its anchors [first_anchor, end_anchor).
 struct RopeSystem {
@@ -25,6 +26,7 @@ struct RopeSystem {
   std::uint32_t first_segment = 0;
   double bend_stiffness = 0;  ///< EI [N m^2]
   double bend_damping = 0;    ///< Damping over EI [s].
+  std::uint32_t object = 0;   ///< Row of the rope.
   std::uint32_t first_contact = 0;
   std::uint32_t end_contact = 0;
   std::uint32_t first_anchor = 0;  ///< Written by build_coupled_groups.

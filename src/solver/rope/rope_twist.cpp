@@ -182,6 +182,10 @@ void load_twist(const Tables& t, const TwistSpan& span, TwistRow& row) {
 
 double twist_stiffness(const Tables& t, const TwistSpan& span) {
   HOOKE_ASSERT(span.length > 0);  // clamps have a segment between them
+  const std::uint32_t first = t.objects[span.object].segments.first;
+  for (std::uint32_t i = span.a.segment; i <= span.b.segment; ++i) {
+    if (!t.segments.joins(first + i)) return 0;
+  }
   return static_cast<double>(t.objects[span.object].twist_stiffness) / span.length;
 }
 

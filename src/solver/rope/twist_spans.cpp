@@ -92,6 +92,14 @@ TwistSpan span_between(const Tables& t, std::uint32_t object, const TwistClamp& 
   return span;
 }
 
+/// Whether the rope goes on from one clamp to another.
+bool are_joined(const Tables& t, const state::Deformable& rope, std::uint32_t a, std::uint32_t b) {
+  for (std::uint32_t i = a; i <= b; ++i) {
+    if (!t.segments.joins(rope.segments.first + i)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void find_twist_spans(const std::vector<Holder>& holders, Tables& t) {
@@ -103,7 +111,8 @@ void find_twist_spans(const std::vector<Holder>& holders, Tables& t) {
     TwistClamp last;
     bool any_last = false;
     for_each_clamp(rope, holders, [&](std::uint32_t from, std::uint32_t to, Holder holder) {
-      if (any_last) t.twists.push_back(span_between(t, i, last, clamp_at(t, from, holder), before));
+      if (any_last && are_joined(t, rope, last.segment, from))
+        t.twists.push_back(span_between(t, i, last, clamp_at(t, from, holder), before));
       last = clamp_at(t, to - 1, holder);
       any_last = true;
     });

@@ -170,6 +170,7 @@ double measure_segments(const Tables& t, Stretch& stretch) {
   for (const state::Deformable& object : t.objects) {
     for (std::uint32_t i = 0; i < object.segments.count; ++i) {
       const std::size_t s = object.segments.first + i;
+      if (!t.segments.joins(s)) continue;
       const double l = distance(t, object.particles.first + i, object.particles.first + i + 1);
       const auto rest = static_cast<double>(t.segments.rest_length[s]);
       stretch.add(l, rest);

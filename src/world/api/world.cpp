@@ -346,6 +346,19 @@ Real World::mass(ParticlesId id) const {
   return mass_of(reading.tables(), reading.tables().particles_slots, id);
 }
 
+std::vector<std::uint32_t> World::broken_segments(RopeId id) const {
+  const world::Reading reading(data_);
+  const state::Tables& t = reading.tables();
+  const std::uint32_t row = t.rope_slots.find(id);
+  if (row == t.rope_slots.kNone) return {};
+  const state::Rows rows = t.objects[row].segments;
+  std::vector<std::uint32_t> broken;
+  for (std::uint32_t i = 0; i < rows.count; ++i) {
+    if (!t.segments.joins(rows.first + i)) broken.push_back(i);
+  }
+  return broken;
+}
+
 std::vector<Real> World::tensions(RopeId id) const {
   const world::Reading reading(data_);
   const std::uint32_t row = reading.tables().rope_slots.find(id);
