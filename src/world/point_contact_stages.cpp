@@ -42,6 +42,17 @@ void remove_contacts_of_gaps(state::Tables& t) {
   });
 }
 
+/// Keeps contacts of ropes with segments that are gone out of what is solved together.
+void release_gaps(state::Tables& t) {
+  const auto is_gone = [&](std::uint32_t object, std::uint32_t segment) {
+    return t.objects[object].has_gaps && !t.segments.joins(segment);
+  };
+  for (state::RopeContact& contact : t.rope_contacts) {
+    if (is_gone(contact.object_a, contact.segment_a) || is_gone(contact.object_b, contact.segment_b))
+      contact.joined = false;
+  }
+}
+
 }  // namespace
 
 void find_point_contacts(WorldData& world, double dt) {
@@ -60,6 +71,7 @@ void update_point_contacts(WorldData& world, Real h) {
   for_ranges(*world.pool, static_cast<int>(t.element_contacts.size()), kElementContactGrain,
              [&](Range rows) { collision::update_element_contacts(rows, h, t); });
   collision::update_rope_contacts(*world.pool, h, world.frame.rope_contacts, t);
+  release_gaps(t);
   solver::find_contacts_of_stiff_solids(*world.pool, h, world.frame.surfaces, t);
 }
 

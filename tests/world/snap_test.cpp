@@ -192,6 +192,28 @@ TEST_SUITE("world/snap") {
     CHECK(world.pose(box).position.y < -4);  // free would be -0.96 - 9 / 2
   }
 
+  TEST_CASE("ropes that touch ropes snap, and their parts go on touching") {
+    WorldDesc desc = space(8);
+    desc.gravity = {0, -10, 0};
+    World world = make_world(desc);
+    RopeDesc line = {.points = {}, .radius = Real(0.02), .strength = 40, .touches_ropes = true};
+    for (int i = 0; i < 21; ++i) line.points.push_back({0.1 * i, 1, 0});
+    line.total_mass = Real(0.4);
+    line.pins = {{0}, {20}};
+    line.loads = {{12, 20}};
+    const RopeId rope = take(world.add_rope(line));
+    RopeDesc across = {.hook_point = {0.5, 1.05, -0.5}, .direction = {0, 0, 1}, .masses = 11};
+    across.pins = {};
+    across.touches_ropes = true;
+    across.radius = Real(0.02);
+    const RopeId other = take(world.add_rope(across));
+    take(world.add_body({.shape = Shape::half_space()}));
+    run(world, 120);
+    CHECK(!world.broken_segments(rope).empty());
+    CHECK(d(world.positions(other)[5].y) < 0.2);
+    CHECK(world.measure().energy.kinetic < 10);
+  }
+
   TEST_CASE("the same bits for any workers, and after a restoration before a snap") {
     std::array<std::uint64_t, 3> hashes = {};
     for (int k = 0; k < 3; ++k) {
