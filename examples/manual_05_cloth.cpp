@@ -1,4 +1,5 @@
-/// Chapter 5 of the manual: a curtain that does not stretch, a sheet that falls in air, and a balloon.
+/// Chapter 5 of the manual: a curtain that does not stretch, a sheet that falls in air, a balloon, and a
+/// sheet that tears.
 
 #include "hooke/hooke.h"
 
@@ -113,9 +114,31 @@ bool balloon() {
          agrees("pressure times volume [J]", (world.pressure(skin.value()) + 101325) * after, before, 0.01);
 }
 
+/// A sheet that is drawn apart at two corners.
+bool tears(hooke::World& world) {
+  const auto rag = world.add_cloth({
+      .columns = 11,
+      .rows = 11,
+      .stretch_stiffness = 100,
+      .tear_strain = 0.2f,
+      .pins = {{.point = 0},
+               {.point = 120,
+                .motion = {.kind = hooke::MotionDesc::Kind::kConstantVelocity, .velocity = {1, -1, 0}}}},
+  });
+  if (!rag) return false;
+  std::size_t split = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    world.step(1.0f / 60);
+    split += world.events().tears.size();
+  }
+  if (world.positions(rag.value()).size() != 121 + split) return false;
+  std::printf("the sheet tore at %zu points\n", split);
+  return split > 0;
+}
+
 }  // namespace
 
 int main() {
   hooke::World world = hooke::World::create().value();
-  return curtain(world) && falling_sheet(world) && balloon() ? 0 : 1;
+  return curtain(world) && falling_sheet(world) && balloon() && tears(world) ? 0 : 1;
 }

@@ -418,4 +418,34 @@ def seams():
         ], world={"particle_substeps": 4}, cloths=cloths, seams=sewn)
 
 
-CLOTH_SCENES = [sail, large_flag, flags, tent, silk_and_felt, seams, hammock, tablecloth]
+def flag_torn():
+    columns, rows, width, height, top, speed, holds = 31, 21, 1.5, 1.0, 2.6, 0.5, 0.3
+    middle, last = rows // 2, columns - 1
+    legs = [(range(middle), 1), (range(middle + 1, rows), -1)]
+    hands = [{"point": row * columns + last, "motion": {"velocity": [0, 0, way * speed]}} for leg, way in legs
+             for row in leg]
+    seconds = 3
+    return scene(
+        "A flag is torn",
+        f"A flag on a pole takes a strain of {100 * holds:.0f} %. Two hands hold its free edge, above and below the middle, "
+        f"and go apart at {2 * speed:.0f} m/s. Points split across the pull, threads beside a crack carry less, and so the "
+        "tear runs toward the pole.",
+        seconds, [3.4, 2.9, 2.9], [0.9, 2.0, 0], {"ground": {}, "steel": {}, "rose": {}}, [
+            ground(),
+            body("pole", "steel", {"cylinder": {"radius": 0.03, "half_height": top / 2 + 0.1}},
+                 [-0.035, top / 2 + 0.1, 0], "static", collides=False),
+        ], [
+            promise("broken", "==", 0, "flag", at_step=3),
+            promise("broken", ">", columns // 2, "flag"),
+            at_point("z", "within", seconds * speed, "flag", last, 0.001),
+            at_point("x", "==", 0, "flag", 0, 0.001),
+        ],
+        world={"particle_substeps": 2},
+        cloths=[{
+            "name": "flag", "material": "rose", "columns": columns, "rows": rows, "corner": [0, top, 0], "width": width,
+            "height": height, "areal_density": 0.2, "stretch_stiffness": 600, "shear_stiffness": 120, "damping": 0.02,
+            "tear_strain": holds, "pins": [{"column": 0}, *hands]
+        }])
+
+
+CLOTH_SCENES = [sail, large_flag, flags, tent, silk_and_felt, seams, hammock, tablecloth, flag_torn]

@@ -79,38 +79,56 @@ static std::vector<const SceneObject*> broken_objects(const Simulation& simulati
 
 static Json json_of_breaks(const Simulation& simulation) {
   Json list = Json::array();
+  const World& world = simulation.world();
   for (const SceneObject* object : broken_objects(simulation)) {
+    if (object->kind == SceneObject::Kind::kCloth) {
+      list.push_back({{"cloth", object->name},
+                      {"time", object->broke.time},
+                      {"strain", object->tore_at},
+                      {"points", world.splits(object->cloth).size()}});
+      continue;
+    }
     const bool is_rope = object->kind == SceneObject::Kind::kRope;
     list.push_back({{is_rope ? "rope" : "hook", object->name},
                     {"time", object->broke.time},
                     {"force", object->broke.force},
                     {"torque", object->broke.torque}});
-    if (!is_rope) continue;
-    list.back()["segments"] = simulation.world().broken_segments(object->rope);
+    if (is_rope) list.back()["segments"] = world.broken_segments(object->rope);
   }
   return list;
+}
+
+/// Returns text such as "; 4 hooks and 1 rope in all"; nothing for one object.
+static std::string count_of_breaks(const std::vector<const SceneObject*>& broken) {
+  if (broken.size() < 2) return {};
+  std::string text;
+  const auto add = [&](SceneObject::Kind kind, const char* one) {
+    const auto count = std::count_if(broken.begin(), broken.end(),
+                                     [kind](const SceneObject* object) { return object->kind == kind; });
+    if (count == 0) return;
+    text += text_of("%s%d %s%s", text.empty() ? "; " : " and ", static_cast<int>(count), one,
+                    count > 1 ? "s" : "");
+  };
+  add(SceneObject::Kind::kHook, "hook");
+  add(SceneObject::Kind::kRope, "rope");
+  add(SceneObject::Kind::kCloth, "cloth");
+  return text + " in all";
 }
 
 /// Returns text such as "'glue' first, at 0.853 s, as it needed 312 N and 4.1 N m; 4 hooks in all".
 static std::string text_of_breaks(const Simulation& simulation) {
   const std::vector<const SceneObject*> broken = broken_objects(simulation);
   if (broken.empty()) return {};
-  const BreakEvent& first = broken.front()->broke;
-  std::string text =
-      "broke     '" + broken.front()->name + "' first" +
-      text_of(", at %.6g s, as it needed %.4g N", first.time, static_cast<double>(first.force));
-  if (first.torque > Real(0)) text += text_of(" and %.4g N m", static_cast<double>(first.torque));
-  const auto ropes =
-      static_cast<std::size_t>(std::count_if(broken.begin(), broken.end(), [](const SceneObject* object) {
-        return object->kind == SceneObject::Kind::kRope;
-      }));
-  const std::size_t hooks = broken.size() - ropes;
-  if (broken.size() > 1) {
-    text += ropes == 0   ? text_of("; %zu hooks in all", hooks)
-            : hooks == 0 ? text_of("; %zu ropes in all", ropes)
-                         : text_of("; %zu hooks and %zu ropes in all", hooks, ropes);
+  const SceneObject& object = *broken.front();
+  const BreakEvent& first = object.broke;
+  std::string text = "broke     '" + object.name + "' first" + text_of(", at %.6g s, as it ", first.time);
+  if (object.kind == SceneObject::Kind::kCloth) {
+    text += text_of("was strained by %.3g %%", 100 * static_cast<double>(object.tore_at));
+  } else {
+    text += text_of("needed %.4g N", static_cast<double>(first.force));
   }
-  return text + "\n";
+  if (first.torque > Real(0)) text += text_of(" and %.4g N m", static_cast<double>(first.torque));
+  return text + count_of_breaks(broken) + "\n";
 }
 
 static Json json_of_problems(const std::vector<RunWarning>& problems) {

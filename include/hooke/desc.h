@@ -441,13 +441,22 @@ struct ClothDesc {
   /// Angle [rad], positive, or kRigid, for Bend::kAngle only: what a pair of triangles is bent beyond it from
   /// its form at rest, it keeps as a fold.
   Real yield_angle = kRigid;
+  /// Force per width that the cloth can take [N/m], positive; any by default. It tears where the strain of
+  /// its triangles times `stretch_stiffness`, as a mean at a point, exceeds this: the point splits, across
+  /// the direction of the largest strain. Beside a crack 60 % of it are enough, so that tears run. At most 8
+  /// points a step split; Events::tears says which. A closed cloth with gas bursts: the gas is gone at once.
+  /// It needs a finite `stretch_stiffness`, and allows neither tethers, which would hold what should tear,
+  /// nor Bend::kSpring.
+  std::optional<Real> strength = {};
+  /// The strain that it can take, positive, in place of `strength`, or besides; the smaller one counts.
+  std::optional<Real> tear_strain = {};
   Bend bend = Bend::kAngle;     ///< By what the cloth resists bending.
   Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
   /// Whether points stay within their rest distance of the pins, whatever pulls at them (tethers). If it is
-  /// not set, they do in cloth without gas that has an `extension_max`, or that would stretch by less than
-  /// 0.1 % if it hung by one side: its springs are to hold, and one pass over them in a substep cannot. They
-  /// may then be `extension_max`, or 0.2 %, farther away. Hooks are no pins. Of more than 256 pins, or 32 of
-  /// a mesh, those that lie far apart have tethers.
+  /// not set, they do in cloth that can neither burst nor tear and has an `extension_max`, or would stretch
+  /// by less than 0.1 % if it hung by one side: its springs are to hold, and one pass over them in a substep
+  /// cannot. They may then be `extension_max`, or 0.2 %, farther away. Hooks are no pins. Of more than 256
+  /// pins, or 32 of a mesh, those that lie far apart have tethers.
   std::optional<bool> tethers = {};
   /// Pressure of the gas in a closed mesh when it is added, above the 101325 Pa of the air around it [Pa].
   /// [-1e5, 1e8] The product of absolute pressure and volume then stays the same. There is no gas by default.

@@ -59,6 +59,17 @@ struct RopeBreakEvent {
   double time = 0;            ///< Time of the world at the end of that substep [s].
 };
 
+/// A point of a cloth that split because the cloth was strained more than ClothDesc::strength or tear_strain
+/// allow.
+struct ClothTearEvent {
+  ClothId cloth = {};       ///< The cloth.
+  std::uint32_t point = 0;  ///< The point that split; it keeps its pin and its hooks.
+  std::uint32_t added = 0;  ///< The point that the other side of the crack got: the cloth's last one then.
+  DVec3 place = {};         ///< Where both were [m].
+  Real strain = Real(0);    ///< Largest strain there.
+  double time = 0;          ///< Time of the world at the end of the step [s].
+};
+
 /// All events of one step. Lists of bodies are in the order of the bodies' creation, and the same for any
 /// number of workers. A body that was removed while it touched something, or was in a sensor, ends that in
 /// the next step; its id is stale by then.
@@ -75,6 +86,7 @@ struct Events {
   std::vector<BreakEvent> breaks;  ///< Hooks that broke, in order of time, then of the hooks' creation.
   /// Segments of ropes that broke, in order of time, then of the ropes' creation, then along the rope.
   std::vector<RopeBreakEvent> rope_breaks;
+  std::vector<ClothTearEvent> tears;  ///< Points of cloths that split, in order of cloths' creation.
 };
 
 }  // namespace hooke

@@ -322,7 +322,8 @@ struct SceneExpectation {
     kAngle,  ///< World::hook_value of a hinge [rad].
     kWay,    ///< World::hook_value of a slider, a wheel or a distance [m].
     kGap,    ///< World::hook_gap of a hook; of the world, the largest [m].
-    /// 1 for a hook that has broken; for a rope, how many of its segments have; of the world, the sum.
+    /// 1 for a hook that has broken; how many segments of a rope have, or how many points of a cloth have
+    /// split; of the world, the sum.
     kBroken,
   };
   /// How the achieved figure is compared with `value`.
@@ -463,9 +464,10 @@ struct SceneObject {
   std::uint32_t rows = 0;                  ///< Rows of a cloth's grid; 0 for a mesh.
   HookKind hook_kind = HookKind::kBall;    ///< Kind of a hook.
   std::array<std::string, 2> hooked = {};  ///< Names of what a hook holds, a and b; empty for the world.
-  /// Whether a hook has broken, whose id is stale then, or a rope has snapped.
+  /// Whether a hook has broken, whose id is stale then, a rope has snapped or a cloth has torn.
   bool broken = false;
-  BreakEvent broke = {};  ///< How a hook broke, or where a rope snapped first, without its HookId.
+  Real tore_at = Real(0);  ///< Strain at which a cloth tore first, if it has.
+  BreakEvent broke = {};   ///< How a hook broke, or where a rope snapped first, without its HookId.
   std::shared_ptr<const Model> model = {};   ///< Model of a mesh body, cloth or solid; of a hull, its faces.
   std::shared_ptr<const Model> visual = {};  ///< Model that is drawn in place of a body's shape; may be null.
   double mesh_volume = 0;  ///< Volume of the closed surface that a solid fills [m^3]; 0 for others.

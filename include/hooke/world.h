@@ -427,6 +427,9 @@ class World {
   /// Torque along each segment of a rope [N m], with the sign of its twist. It is the mean over the last
   /// step.
   [[nodiscard]] std::vector<Real> torques(RopeId id) const;
+  /// For each point that a cloth got by tearing, in the order of its index, the point that it split from.
+  /// They follow the points that the cloth was made with, which keep their indices.
+  [[nodiscard]] std::vector<std::uint32_t> splits(ClothId id) const;
   /// Lists the triangles of a cloth, as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
   /// Pressure of the gas in a closed cloth above that of the air around it [Pa]; 0 for a cloth without.

@@ -35,6 +35,16 @@ struct Surface {
   int columns = 0, rows = 0;
 };
 
+bool can_tear(const ClothDesc& desc) {
+  return desc.strength.has_value() || desc.tear_strain.has_value();
+}
+
+/// The strain at which the cloth tears.
+Real tear_strain_of(const ClothDesc& desc) {
+  const Real strain = desc.tear_strain.value_or(kRigid);
+  return desc.strength ? std::min(strain, *desc.strength / desc.stretch_stiffness) : strain;
+}
+
 Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
   Checks checks("cloth");
   if (is_grid) {
@@ -67,6 +77,19 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
       .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
       .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+  if (desc.strength) {
+    checks.positive("strength", static_cast<double>(*desc.strength))
+        .require(!std::isinf(desc.stretch_stiffness), "strength",
+                 "needs a stretch_stiffness that is not rigid; tear_strain does not");
+  }
+  if (desc.tear_strain) checks.positive("tear_strain", static_cast<double>(*desc.tear_strain));
+  if (can_tear(desc)) {
+    const char* const field = desc.strength ? "strength" : "tear_strain";
+    checks
+        .require(desc.bend != ClothDesc::Bend::kSpring, field,
+                 "needs a bend other than springs, which lead across cracks")
+        .require(!desc.tethers.value_or(false), field, "excludes tethers, which hold what should tear");
+  }
   if (desc.pressure) checks.in_range("pressure", static_cast<double>(*desc.pressure), -1e5, 1e8);
   if (desc.total_mass) checks.mass("total_mass", static_cast<double>(*desc.total_mass));
   check_points(checks, desc.pins, desc.loads, count);
@@ -303,7 +326,7 @@ std::optional<Real> slack_of_tethers(const ClothDesc& desc, double mass, double 
   constexpr double kGravity = 9.81;
   constexpr double kMostOwnStretch = 1e-3;
   if (desc.tethers) return *desc.tethers ? std::optional<Real>(Real(0)) : std::nullopt;
-  if (desc.pressure) return std::nullopt;
+  if (desc.pressure || can_tear(desc)) return std::nullopt;
   if (!std::isinf(desc.extension_max)) return desc.extension_max;
   const double own_stretch = mass * kGravity / std::sqrt(area) / static_cast<double>(desc.stretch_stiffness);
   if (own_stretch > kMostOwnStretch) return std::nullopt;
@@ -435,6 +458,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.surface = contact.value();
   object.friction = desc.contact.friction;
   object.yield_angle = desc.yield_angle;
+  object.tear_strain = tear_strain_of(desc);
   object.columns = static_cast<std::uint32_t>(surface.columns);
   object.drag_coefficient = desc.drag_coefficient;
   object.lift_coefficient = desc.lift_coefficient;

@@ -112,8 +112,9 @@ std::vector<NamedLine> edges_of(const Deformable& object, const Tables& t) {
   std::vector<NamedLine> edges;
   if (object.columns > 0) {
     const std::uint32_t columns = object.columns;
-    const std::uint32_t rows = object.particles.count / columns;
-    HOOKE_ASSERT(rows * columns == object.particles.count);
+    const auto points = object.particles.count - static_cast<std::uint32_t>(object.split_from.size());
+    const std::uint32_t rows = points / columns;
+    HOOKE_ASSERT(rows * columns == points);
     edges.push_back({"left", grid_line(0, columns, rows)});
     edges.push_back({"right", grid_line(columns - 1, columns, rows)});
     edges.push_back({"top", grid_line(0, 1, columns)});

@@ -101,8 +101,11 @@ struct Deformable {
                                    ///< it.
   Real strength = kRigid;          ///< Tension that a rope can take [N].
   bool has_gaps = false;           ///< Some segment of the rope is gone.
-  Real yield_angle = kRigid;       ///< Yield angle of a cloth's bends [rad].
-  Real yield_stress = kRigid;      ///< Yield stress of a solid [Pa].
+  Real tear_strain = kRigid;       ///< Strain at which a cloth tears.
+  /// For each point that a cloth got by tearing: the point that it split from, in the maker's order.
+  std::vector<std::uint32_t> split_from = {};
+  Real yield_angle = kRigid;                         ///< Yield angle of a cloth's bends [rad].
+  Real yield_stress = kRigid;                        ///< Yield stress of a solid [Pa].
   std::shared_ptr<const RestEdges> rest_edges = {};  ///< Set for a solid that yields; by its tetrahedra.
   bool touches_ropes = false;         ///< The rope touches itself and all ropes that have this flag.
   Real repulsion_strength = Real(0);  ///< Repulsion of a rope [N m^2]; 0: none.

@@ -1,6 +1,7 @@
 #include "world/particle_stages.h"
 
 #include "base/assert.h"
+#include "build/cloth_tears.h"
 #include "solver/check_routes.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/pressed_points.h"
@@ -397,6 +398,15 @@ void flow_cloths(WorldData& world) {
     division.for_rows(0, static_cast<int>(group.yields.bends.size()), kTriangleGrain,
                       [&](Range rows) { solver::flow_bends(group.yields, rows, world.tables, group.bends); });
   });
+}
+
+void tear_cloths(WorldData& world, double dt) {
+  state::Tables& t = world.tables;
+  std::vector<ClothTearEvent>& tears = world.last_step.events.tears;
+  tears.clear();
+  for (std::uint32_t i = 0; i < t.objects.size(); ++i) {
+    if (t.objects[i].tear_strain < kRigid) build::tear_cloth(i, t.time + dt, t, tears);
+  }
 }
 
 void begin_coupled_groups(WorldData& world, Real h, bool first) {

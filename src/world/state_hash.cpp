@@ -104,6 +104,7 @@ void add_objects(StateHash& hash, const Tables& t) {
     add_rest_form(hash, o);
     add_surface(hash, o);
     add_strength(hash, o, t.segments);
+    if (o.tear_strain < kRigid) add(hash, o.tear_strain, o.split_from);
   }
   add_columns(hash, t.particles);
   add_columns(hash, t.springs);

@@ -205,6 +205,8 @@ ClothDesc make_cloth(Random& random, DVec3 place, const Meshes& meshes, Taste ta
   if (cloth.bend != ClothDesc::Bend::kAngle) cloth.yield_angle = kRigid;
   if (random.chance(0.3)) cloth.extension_max = random.real(0.02, 0.3);
   cloth.tethers = random.chance(0.2);
+  const bool may_tear = cloth.bend != ClothDesc::Bend::kSpring && !*cloth.tethers;
+  if (may_tear && random.chance(0.3)) cloth.tear_strain = random.real(0.02, 0.5);
   cloth.pins = make_pins(random, points, taste);
   cloth.loads = make_loads(random, points);
   if (random.chance(0.3)) cloth.velocity = random.vector(2);

@@ -81,7 +81,9 @@ TEST_SUITE("world/api") {
          {"cloth.stretch_stiffness", [](ClothDesc& d, Real v) { d.stretch_stiffness = v; }, true},
          {"cloth.shear_stiffness", [](ClothDesc& d, Real v) { d.shear_stiffness = v; }, true, true},
          {"cloth.bend_stiffness", [](ClothDesc& d, Real v) { d.bend_stiffness = v; }, false, true},
-         {"cloth.extension_max", [](ClothDesc& d, Real v) { d.extension_max = v; }, true}},
+         {"cloth.extension_max", [](ClothDesc& d, Real v) { d.extension_max = v; }, true},
+         {"cloth.strength", [](ClothDesc& d, Real v) { d.strength = v; }},
+         {"cloth.tear_strain", [](ClothDesc& d, Real v) { d.tear_strain = v; }}},
         [](World& world, const ClothDesc& desc) { return world.add_cloth(desc); });
   }
 

@@ -56,6 +56,36 @@ ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
   return surface;
 }
 
+void tear_surface(std::span<const std::array<std::uint32_t, 3>> triangles,
+                  std::span<const std::uint32_t> splits, ClothSurface& surface) {
+  std::vector<std::uint32_t>& indices = surface.geometry->indices;
+  if (splits.empty() || indices.size() != 3 * triangles.size()) return;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vertex_of;  // by vertex before and point
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::uint32_t point = triangles[i / 3][i % 3];
+    const std::uint32_t before = indices[i];
+    if (surface.point_of[before] == point) continue;
+    const auto next = static_cast<std::uint32_t>(surface.point_of.size());
+    const auto [entry, is_new] = vertex_of.try_emplace({before, point}, next);
+    indices[i] = entry->second;
+    if (!is_new) continue;
+    surface.geometry->vertices.push_back(render::Vertex(surface.geometry->vertices[before]));
+    surface.point_of.push_back(point);
+    surface.group_of.push_back(static_cast<std::uint32_t>(surface.group_normals.size()));
+    surface.group_normals.emplace_back();
+  }
+}
+
+std::vector<std::array<std::uint32_t, 3>> untorn(std::vector<std::array<std::uint32_t, 3>> triangles,
+                                                 std::span<const std::uint32_t> splits, std::size_t points) {
+  for (auto& triangle : triangles) {
+    for (std::uint32_t& corner : triangle) {
+      while (corner >= points && corner - points < splits.size()) corner = splits[corner - points];
+    }
+  }
+  return triangles;
+}
+
 std::shared_ptr<render::MeshGeometry> geometry_of(const Model& model) {
   auto geometry = std::make_shared<render::MeshGeometry>();
   geometry->vertices.reserve(model.vertices.size());

@@ -26,6 +26,17 @@ struct ClothSurface {
 ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
                                std::span<const std::array<std::uint32_t, 3>> triangles);
 
+/// Parts the surface of a cloth where it has torn. `triangles` are those of the cloth, in the order in which
+/// the surface was made from them, and `splits` is World::splits. New vertices have the texture coordinates
+/// of those that they split from.
+void tear_surface(std::span<const std::array<std::uint32_t, 3>> triangles,
+                  std::span<const std::uint32_t> splits, ClothSurface& surface);
+
+/// The triangles as they were before the cloth tore; it was made with `points` points.
+[[nodiscard]] std::vector<std::array<std::uint32_t, 3>> untorn(
+    std::vector<std::array<std::uint32_t, 3>> triangles, std::span<const std::uint32_t> splits,
+    std::size_t points);
+
 /// Makes the surface of a model whose simulated vertices are the cloth's points.
 ClothSurface make_model_surface(const Model& model);
 

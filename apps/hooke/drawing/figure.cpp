@@ -139,12 +139,17 @@ std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object
 }
 
 void prepare_cloth(const Simulation& simulation, const SceneObject& object, Figure& figure) {
+  const World& world = simulation.world();
+  const std::vector<std::uint32_t> splits = world.splits(object.cloth);
+  const auto triangles = world.triangles(object.cloth);
+  figure.splits = splits.size();
   if (object.model != nullptr) {
     figure.surface = make_model_surface(*object.model);
   } else if (object.columns > 1 && object.rows > 1) {
-    figure.surface =
-        make_grid_surface(object.columns, object.rows, simulation.world().triangles(object.cloth));
+    const std::size_t points = std::size_t{object.columns} * object.rows;
+    figure.surface = make_grid_surface(object.columns, object.rows, untorn(triangles, splits, points));
   }
+  if (figure.surface) tear_surface(triangles, splits, *figure.surface);
 }
 
 void prepare_solid(const Simulation& simulation, const SceneObject& object, Figure& figure) {

@@ -77,7 +77,10 @@ std::shared_ptr<const render::Image> SceneCapture::find_texture(const std::strin
 
 std::shared_ptr<Figure> SceneCapture::find_figure(const Simulation& simulation, const SceneObject& object) {
   std::shared_ptr<Figure>& figure = figures_[key_of(object)];
-  if (figure == nullptr) {
+  // A cloth that has torn is a new figure; who draws may still have the one before.
+  const bool is_torn = object.kind == SceneObject::Kind::kCloth && figure != nullptr &&
+                       figure->splits != simulation.world().splits(object.cloth).size();
+  if (figure == nullptr || is_torn) {
     figure = std::make_shared<Figure>(make_figure(
         simulation, object,
         [this](const std::string& path, const ImageBytes& bytes) { return find_texture(path, bytes); },

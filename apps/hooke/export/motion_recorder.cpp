@@ -100,6 +100,8 @@ MotionRecorder::Taken MotionRecorder::taken(const World& world, const SceneObjec
   now.state.velocity = vector_cast<Real>(mean_of(velocities_of(world, object)));
   const bool is_skin_of_solid = object.kind == Kind::kSolid && detail_ == Detail::kSkins;
   now.points = is_skin_of_solid ? world.surface(object.solid) : copy_points(points);
+  // Formats of motion keep the points of the first frame: a tear shows as a triangle that is long.
+  if (object.kind == Kind::kCloth) now.points.resize(points.size() - world.splits(object.cloth).size());
   return now;
 }
 

@@ -25,17 +25,8 @@ struct NamedObject {
 };
 
 /// A Subject is what a quantity is measured on.
-enum class Subject : std::uint8_t {
-  kWorld,
-  kObject,
-  kPoint,
-  kRope,
-  kBody,
-  kHook,
-  kHookOrRope,
-  kHookOrWorld,
-  kHookRopeOrWorld
-};
+/// Hooks and ropes twist, hooks and the world have gaps, and these, ropes and cloths break.
+enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kTwists, kGaps, kBreaks };
 
 class Checker {
  public:
@@ -494,15 +485,15 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
     case Quantity::kTwist:
       return Subject::kRope;
     case Quantity::kTorque:
-      return Subject::kHookOrRope;
+      return Subject::kTwists;
     case Quantity::kForce:
     case Quantity::kAngle:
     case Quantity::kWay:
       return Subject::kHook;
     case Quantity::kGap:
-      return Subject::kHookOrWorld;
+      return Subject::kGaps;
     case Quantity::kBroken:
-      return Subject::kHookRopeOrWorld;
+      return Subject::kBreaks;
     default:
       return Subject::kWorld;
   }
@@ -515,11 +506,12 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
     fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + reason);
   };
   const bool body = object.kind == Kind::kBody;
-  if (subject == Subject::kHookOrRope) subject = object.kind == Kind::kRope ? Subject::kRope : Subject::kHook;
-  if (subject == Subject::kHook || subject == Subject::kHookOrWorld) {
+  if (subject == Subject::kTwists) subject = object.kind == Kind::kRope ? Subject::kRope : Subject::kHook;
+  if (subject == Subject::kHook || subject == Subject::kGaps) {
     if (object.kind != Kind::kHook) wrong(" is not a hook");
-  } else if (subject == Subject::kHookRopeOrWorld) {
-    if (object.kind != Kind::kHook && object.kind != Kind::kRope) wrong(" is neither a hook nor a rope");
+  } else if (subject == Subject::kBreaks) {
+    if (object.kind != Kind::kHook && object.kind != Kind::kRope && object.kind != Kind::kCloth)
+      wrong(" is neither a hook nor a rope nor a cloth");
   } else if (subject == Subject::kBody) {
     if (!body) wrong(" is not a body");
   } else if (!has_points(object.kind) && !(body && subject == Subject::kPoint)) {
@@ -553,7 +545,7 @@ void Checker::check_expectation(const SceneExpectation& expectation, const std::
     return;
   }
   if (expectation.of.empty()) {
-    if (subject == Subject::kHookOrWorld || subject == Subject::kHookRopeOrWorld) return;
+    if (subject == Subject::kGaps || subject == Subject::kBreaks) return;
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'of', the name of an object");
     return;
   }

@@ -102,6 +102,18 @@ double extreme_height(const SimulationData& data, const SceneObject& object, boo
   return extreme;
 }
 
+/// How many segments of a rope have broken, how many points of a cloth have split, or whether a hook broke.
+double count_broken(const World& world, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return static_cast<double>(world.broken_segments(object.rope).size());
+    case SceneObject::Kind::kCloth:
+      return static_cast<double>(world.splits(object.cloth).size());
+    default:
+      return object.broken ? 1 : 0;
+  }
+}
+
 double hook_figure(const World& world, const SceneObject& object, Quantity quantity) {
   switch (quantity) {
     case Quantity::kForce:
@@ -111,7 +123,7 @@ double hook_figure(const World& world, const SceneObject& object, Quantity quant
     case Quantity::kGap:
       return static_cast<double>(world.hook_gap(object.hook));
     case Quantity::kBroken:
-      return object.broken ? 1 : 0;
+      return count_broken(world, object);
     default:
       return static_cast<double>(world.hook_value(object.hook));
   }
@@ -127,7 +139,7 @@ double object_figure(const SimulationData& data, const SceneObject& object, cons
     case Quantity::kExtension:
       return extension_of(world, object);
     case Quantity::kBroken:
-      return static_cast<double>(world.broken_segments(object.rope).size());
+      return count_broken(world, object);
     case Quantity::kTension:
     case Quantity::kTwist:
     case Quantity::kTorque:
@@ -166,12 +178,9 @@ double world_figure(const SimulationData& data, Quantity quantity) {
     case Quantity::kGap:
       return measured.largest_gap;
     case Quantity::kBroken:
-      return std::accumulate(data.objects.begin(), data.objects.end(), 0.0,
-                             [&](double sum, const SceneObject& object) {
-                               const bool is_rope = object.kind == SceneObject::Kind::kRope;
-                               const std::size_t segments = data.world.broken_segments(object.rope).size();
-                               return sum + (is_rope ? static_cast<double>(segments) : object.broken ? 1 : 0);
-                             });
+      return std::accumulate(
+          data.objects.begin(), data.objects.end(), 0.0,
+          [&](double sum, const SceneObject& object) { return sum + count_broken(data.world, object); });
     default:
       return kNothing;
   }

@@ -187,6 +187,19 @@ void note_snapped_ropes(SimulationData& data) {
   }
 }
 
+/// Notes the first tear of each cloth.
+void note_torn_cloths(SimulationData& data) {
+  for (const ClothTearEvent& event : data.world.events().tears) {
+    const auto object = std::find_if(data.objects.begin(), data.objects.end(),
+                                     [&](const SceneObject& one) { return one.cloth == event.cloth; });
+    if (object == data.objects.end() || object->broken) continue;
+    data.saved_objects = nullptr;
+    object->broken = true;
+    object->broke = {.time = event.time};
+    object->tore_at = event.strain;
+  }
+}
+
 void note_broken_hooks(SimulationData& data) {
   const std::vector<BreakEvent>& breaks = data.world.events().breaks;
   if (breaks.empty()) return;
@@ -235,6 +248,7 @@ StepReport Simulation::step() {
   const StepReport report = data_->world.step(data_->scene.dt);
   note_broken_hooks(*data_);
   note_snapped_ropes(*data_);
+  note_torn_cloths(*data_);
   data_->contacts = report.contacts;
   if (report.moved) evaluate_due(*data_);
   return report;

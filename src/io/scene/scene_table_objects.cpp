@@ -255,6 +255,10 @@ std::vector<Field> cloth_rows() {
           "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
       field<kDesc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
                                               "Largest relative extension of a stretch spring."),
+      field<kDesc, &ClothDesc::strength>("strength", "N/m", kPositive,
+                                         "Force per width that it takes; beyond it tears. Any by default."),
+      field<kDesc, &ClothDesc::tear_strain>("tear_strain", "", kPositive,
+                                            "Strain at which it tears; besides or in place of `strength`."),
       field<kDesc, &ClothDesc::tethers>(
           "tethers", "", kAny,
           "Hold points within their rest distance of the pins; by default if the "

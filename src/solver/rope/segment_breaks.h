@@ -7,7 +7,7 @@
 #include <vector>
 
 /// \file
-/// Segments of ropes that break: docs/decisions/0043-ropes-that-snap.md. As with hooks
+/// Segments of ropes that break: docs/decisions/0043-ropes-and-cloth-that-break.md. As with hooks
 /// (solver/joint/hook_breaks.h), a segment that needs more than it can take becomes a dashpot for the rest of
 /// that substep, and all is solved again. It gives way completely first, which shows the speed s0 at which
 /// its ends part. A dashpot of F h / s0 then takes p and leaves s. As the speed falls by what the dashpot
