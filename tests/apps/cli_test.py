@@ -139,6 +139,23 @@ class Run(Program):
         self.assertEqual(broke["torque"], 0)
         self.assertAlmostEqual(broke["time"], 1 / 480, places=6)
 
+    def test_ropes_that_snap_and_cloths_that_tear_are_named_with_hooks(self):
+        pull = {"velocity": [1, 0, 0]}
+        scene = {"version": 1, "seconds": 0.5,
+                 "ropes": [{"name": "cord", "direction": [0, -1, 0], "masses": 3, "strength": 50,
+                            "loads": [{"point": "last", "mass": 10}]}],
+                 "cloths": [{"name": "rag", "columns": 4, "rows": 4, "corner": [3, 0, 0], "stretch_stiffness": 100,
+                             "tear_strain": 0.2, "pins": [{"point": 0}, {"point": 3, "motion": pull}]}],
+                 "expect": [{"quantity": "broken", "of": "cord", "op": "==", "value": 1},
+                            {"quantity": "broken", "of": "rag", "op": ">", "value": 0}]}
+        out, _ = self.hooke("run", self.scene(scene), "--json", "report.json")
+        self.assertRegex(out, r"broke     'cord' first, at .* s, as it needed 10\d\.?\d* N; 1 rope and 1 cloth in all\n")
+        cord, rag = json.loads((self.folder / "report.json").read_text())["broke"]
+        self.assertEqual((cord["rope"], cord["segments"]), ("cord", [0]))
+        self.assertEqual(rag["cloth"], "rag")
+        self.assertGreater(rag["strain"], 0.2)
+        self.assertGreater(rag["points"], 0)
+
     def test_a_promise_that_is_broken_is_exit_code_1(self):
         content = copy.deepcopy(FALLING)
         content["expect"][0]["value"] = 2
