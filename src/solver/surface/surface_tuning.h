@@ -22,6 +22,9 @@ inline constexpr Real kSurfaceRecoverySpeed = Real(1);
 inline constexpr Real kRidgeShare = Real(0.8);
 inline constexpr Real kEdgeShare = Real(0.5);
 
+/// Distance that a segment of a rope keeps from others and from edges, over the thickness [ratio].
+inline constexpr Real kRopeShare = Real(1);
+
 /// A pair of a vertex and a face, or of edges, has a row where it comes within this share of the thickness
 /// beyond its distance [ratio].
 inline constexpr Real kSurfaceMargin = Real(0.2);
