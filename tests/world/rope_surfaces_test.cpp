@@ -126,6 +126,15 @@ TEST_SUITE("world/rope_surfaces") {
 
   }  // namespace
 
+  TEST_CASE("a rope without a radius is refused") {
+    Room room;
+    for (const Real radius : {Real(0), Real(-1)}) {
+      const auto refused = room.world.add_rope(straight({0, 0, 0}, {1, 0, 0}, 4, radius));
+      REQUIRE(!refused);
+      CHECK(refused.error().where == "rope.radius");
+    }
+  }
+
   TEST_CASE("intersect: a rope that falls across a taut one hangs over it and does not pass") {
     Room room = room_of_substeps();
     RopeDesc lower = straight({-0.3, 0, 0}, {0.3, 0, 0}, 20);
@@ -279,6 +288,58 @@ TEST_SUITE("world/rope_surfaces") {
     CHECK(height_after({.mask = 2}) < -0.5);
     CHECK(height_after({.group = -3}) < -0.5);
     CHECK(height_after({.mask = 2, .group = 3}) > 0.006);
+  }
+
+  TEST_CASE("a closed rope, which is solved in a coupled group, lies on a cloth as others do") {
+    Room room;
+    room.add(pinned_sheet(16, {0, 0, 0}));
+    std::vector<DVec3> points;
+    for (int i = 0; i <= 20; ++i) {
+      const double turn = 2 * std::numbers::pi * i / 20.5;
+      points.push_back({0.08 * std::cos(turn), 0.03, 0.08 * std::sin(turn)});
+    }
+    points.back() = points.front() + DVec3{1e-5, 0, 0};
+    RopeDesc desc = rope(points);
+    desc.air_friction = Real(0.05);
+    const RopeId id = room.add(desc);
+    HookDesc hook;
+    hook.a.point = point(id, 0);
+    hook.b.point = point(id, 20);
+    hook.anchor = points.front();
+    const auto added = room.world.add_hook(hook);
+    REQUIRE_MESSAGE(added, (added ? "" : added.error().message));
+    const Run result = run(room, 240);
+    CHECK(result.crossing == 0);
+    CHECK(result.held_back == 0);
+    const PointView x = room.world.positions(id);
+    for (std::size_t i = 0; i < x.size(); ++i) CHECK(x[i].y == doctest::Approx(0.0065).epsilon(0.05));
+    CHECK(rms_of(room.world.velocities(id)) < 0.01);
+  }
+
+  TEST_CASE("intersect: a rope that is turned with the world and its gravity falls on a cloth the same way") {
+    const auto heights = [](bool turned) {
+      // Around z by a quarter: x becomes y, and y becomes -x.
+      const auto turn = [&](DVec3 p) { return turned ? DVec3{-p.y, p.x, p.z} : p; };
+      Room room;
+      REQUIRE(room.world.set_gravity(vector_cast<Real>(turn({0, -kGravity, 0}))).has_value());
+      ClothDesc base = pinned_sheet(16, {0, 0, 0});
+      base.corner = turn(base.corner);
+      base.column_direction = vector_cast<Real>(turn({1, 0, 0}));
+      room.add(base);
+      std::vector<DVec3> points;
+      for (int i = 0; i <= 12; ++i)
+        points.push_back(turn({-0.1 + 0.017 * i, 0.03 + 0.001 * i, 0.013 - 0.004 * i}));
+      const RopeId id = room.add(rope(points));
+      CHECK(run(room, 60).crossing == 0);
+      std::vector<double> found;
+      const PointView x = room.world.positions(id);
+      for (std::size_t i = 0; i < x.size(); ++i) found.push_back(turned ? -x[i].x : x[i].y);
+      return found;
+    };
+    const std::vector<double> upright = heights(false);
+    const std::vector<double> turned = heights(true);
+    for (std::size_t i = 0; i < upright.size(); ++i)
+      CHECK(turned[i] == doctest::Approx(upright[i]).epsilon(1e-3));
   }
 
   TEST_CASE("a rope that is sewn to a cloth, or tied to a point of it, is not pushed off") {
