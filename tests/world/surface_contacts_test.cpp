@@ -297,6 +297,12 @@ TEST_SUITE("world/surface_contacts") {
         far.corner.y += 0.05;
         far.velocity = {};
         room.add(far);
+        // Surfaces with ropes are searched earlier in a substep than others.
+        RopeDesc rope;
+        rope.hook_point = {100, 0.5, 0};
+        room.add(rope);
+        rope.hook_point.y = 0.55;
+        room.add(rope);
       }
       run(room, 60);
       std::vector<DVec3> points;

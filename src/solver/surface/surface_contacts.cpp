@@ -117,8 +117,10 @@ void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceConta
 
 void find_contacts_before_solutions(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
                                     const state::Tables& tables) {
-  if (!contacts.active || (!contacts.any_stiff && !contacts.any_rope)) return;
-  refresh_surface_groups(tables, h, contacts);
+  if (!contacts.active) return;
+  // All groups are made at the same time in a step, whether a rope or a stiff solid is somewhere or not.
+  if (contacts.regroup || contacts.any_stiff) refresh_surface_groups(tables, h, contacts);
+  if (!contacts.any_stiff && !contacts.any_rope) return;
   for_groups_divided(pool, contacts, [&](SurfaceGroup& group, parallel::ThreadPool* workers) {
     const bool any_stiff = std::any_of(group.meshes.begin(), group.meshes.end(), [&](std::uint32_t mesh) {
       return contacts.stiff[contacts.surfaces.meshes[mesh].object] != 0;

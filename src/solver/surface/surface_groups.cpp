@@ -20,18 +20,44 @@ struct Path {
   Real fastest = Real(0);
 };
 
+/// Grows a box by a point, unless a coordinate is not a number. Branches on each would cost more than all
+/// else.
+void take(Vec3 p, Box& box) {
+  const auto least = [](Real a, Real b) { return a < b ? a : b; };
+  const auto most = [](Real a, Real b) { return a > b ? a : b; };
+  box.lower = {least(p.x, box.lower.x), least(p.y, box.lower.y), least(p.z, box.lower.z)};
+  box.upper = {most(p.x, box.upper.x), most(p.y, box.upper.y), most(p.z, box.upper.z)};
+}
+
+/// Calls `visit(x, v, start)` with each vertex of a surface.
+template <class Visit>
+void for_paths(const state::Tables& t, const SurfaceContacts& contacts, const SurfaceMesh& mesh,
+               Visit visit) {
+  for (std::uint32_t i = mesh.first_vertex; i < mesh.end_vertex(); ++i) {
+    const std::uint32_t particle = contacts.surfaces.particle[i];
+    visit(t.particles.position[particle].x, t.particles.velocity[particle].v, contacts.start[i].x);
+  }
+}
+
 Path path_of(const state::Tables& t, const SurfaceContacts& contacts, const SurfaceMesh& mesh, Real time) {
   Path path;
   Real fastest = Real(0);
-  for (std::uint32_t i = mesh.first_vertex; i < mesh.end_vertex(); ++i) {
-    const std::uint32_t particle = contacts.surfaces.particle[i];
-    const Vec3 x = t.particles.position[particle].x;
-    const Vec3 v = t.particles.velocity[particle].v;
-    for (const Vec3 p : {x, x + time * v, contacts.start[i].x}) {
-      if (is_finite(p)) path.box = merge(path.box, {p, p});  // Others are quarantined when the step ends.
+  for_paths(t, contacts, mesh, [&](Vec3 x, Vec3 v, Vec3 start) {
+    for (const Vec3 p : {x, x + time * v, start}) take(p, path.box);
+    const Real squared = length_squared(v);
+    fastest = squared > fastest ? squared : fastest;
+  });
+  path.fastest = std::sqrt(fastest);
+  if (is_finite(path.box.upper - path.box.lower) && std::isfinite(fastest)) return path;
+  // Some point is infinite; it is quarantined when the step ends.
+  path = {};
+  fastest = Real(0);
+  for_paths(t, contacts, mesh, [&](Vec3 x, Vec3 v, Vec3 start) {
+    for (const Vec3 p : {x, x + time * v, start}) {
+      if (is_finite(p)) take(p, path.box);
     }
     if (is_finite(v)) fastest = std::max(fastest, length_squared(v));
-  }
+  });
   path.fastest = std::sqrt(fastest);
   return path;
 }
