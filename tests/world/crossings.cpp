@@ -189,6 +189,8 @@ bool pass(const Ends& from, const Ends& to) {
     for (std::size_t k = 0; k < 4; ++k) x[k] = (1 - time) * from[k] + time * to[k];
     return x;
   };
+  double farthest = 0;
+  for (std::size_t k = 0; k < 4; ++k) farthest = std::max(farthest, length(to[k] - from[k]));
   const double f0 = volume_of(at(0));
   const double f1 = volume_of(at(1.0 / 3));
   const double f2 = volume_of(at(2.0 / 3));
@@ -201,8 +203,12 @@ bool pass(const Ends& from, const Ends& to) {
     const auto [least, most] = std::minmax_element(piece.coefficient.begin(), piece.coefficient.end());
     if (*least > 0 || *most < 0) continue;
     const double middle = 0.5 * (piece.begin + piece.end);
+    const double distance = distance_of(at(middle));
+    // Lines that stay in one plane have the volume 0 all the time; how far they go tells whether they may
+    // meet.
+    if (distance > (piece.end - piece.begin) * farthest + 1e-8) continue;
     if (piece.end - piece.begin < 1e-9) {
-      if (distance_of(at(middle)) < 1e-8) return true;
+      if (distance < 1e-8) return true;
       continue;
     }
     const auto& [a, b, c, d] = piece.coefficient;

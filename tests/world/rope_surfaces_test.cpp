@@ -171,6 +171,56 @@ TEST_SUITE("world/rope_surfaces") {
     }
   }
 
+  TEST_CASE("intersect: a heap of ropes on a cloth: none passes another or the cloth in 300 frames") {
+    Room room = room_of_substeps();
+    room.add(pinned_sheet(16, {0, 0, 0}));
+    for (int i = 0; i < 10; ++i) {
+      const double turn = 2.4 * i;
+      const DVec3 along = {0.1 * std::cos(turn), 0, 0.1 * std::sin(turn)};
+      const DVec3 middle = {0.01 * std::cos(3.0 * i), 0.02 + 0.015 * i, 0.01 * std::sin(3.0 * i)};
+      RopeDesc desc = straight(middle - along, middle + along, 8);
+      desc.air_friction = Real(0.02);
+      room.add(desc);
+    }
+    std::size_t passes = 0;
+    std::size_t crossing = 0;
+    for (int i = 0; i < 300; ++i) {
+      passes += passes_in(room, 8);
+      crossing += count_crossings(surfaces_of(room)).crossing;
+    }
+    CHECK(passes == 0);
+    CHECK(crossing == 0);
+    for (std::size_t i = 1; i < room.surfaces.size(); ++i) {
+      const RopeId id = std::get<RopeId>(room.surfaces[i]);
+      CHECK(mean_of(room.world.positions(id)).y > 0.006);
+      CHECK(rms_of(room.world.velocities(id)) < 0.05);
+    }
+  }
+
+  TEST_CASE("intersect: a rope that falls on a jelly lies on it, and does not go in within 300 frames") {
+    Room room;
+    room.add_ground();
+    SolidDesc jelly;
+    jelly.cells = {4, 2, 4};
+    jelly.size = {Real(0.2), Real(0.1), Real(0.2)};
+    jelly.young_modulus = Real(2e4);
+    jelly.thickness = Real(0.004);
+    jelly.position = {0, 0.055, 0};
+    room.add(jelly);
+    RopeDesc desc = straight({-0.06, 0.14, 0.013}, {0.05, 0.16, -0.02}, 8);
+    desc.air_friction = Real(0.05);
+    const RopeId id = room.add(desc);
+    const Run result = run(room, 300);
+    CHECK(result.crossing == 0);
+    CHECK(result.held_back == 0);
+    const PointView x = room.world.positions(id);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      CHECK(x[i].y > 0.095);
+      CHECK(x[i].y < 0.115);
+    }
+    CHECK(rms_of(room.world.velocities(id)) < 0.01);
+  }
+
   TEST_CASE("ropes that both repel, or both touch ropes, are left to what they have for it") {
     const auto lowest_after = [](bool repels, bool filtered) {
       Room room;
