@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace hooke::solver {
 
@@ -463,6 +464,11 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
                           group.found[i]);
     maker.set_shares(group.found[i]);
   });
+  const auto pairs = std::span(group.found).first(group.pairs.size());
+  group.overflows = std::any_of(pairs.begin(), pairs.end(), [](const std::vector<SurfaceFound>& found) {
+    return found.size() == kMostFound;
+  });
+  if (group.overflows) return;
   // Rows go into blocks in the order of pairs, whoever found them.
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
     for (const SurfaceFound& found : group.found[i]) maker.take(found);

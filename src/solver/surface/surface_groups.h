@@ -40,6 +40,7 @@ struct SurfaceGroup {
   std::vector<std::array<std::uint32_t, 2>> pairs;  ///< Meshes that may touch; twice the same for one that
                                                     ///< touches itself.
   bool known = false;                               ///< What stands below was found in this step.
+  bool overflows = false;      ///< More pairs were found than there is room for: nothing of it moves.
   bool held = false;           ///< Some vertex is pinned: the group has no motion of its own.
   DVec3 origin = {};           ///< Origin of the positions of its vertices [m].
   Real reserve = Real(0);      ///< Rounding of these positions [m].

@@ -10,6 +10,7 @@
 
 #include "solver/simd/numbers.h"
 #include "solver/surface/surface_kernels.h"
+#include "solver/surface/surface_tuning.h"
 
 #include <algorithm>
 #include <array>
@@ -409,6 +410,7 @@ class SurfaceSearcher {
       if (!(lane[0][j] > Real(0))) continue;
       if (lane[0][j] == Real(SurfaceFound::kNear) && is_left_to_others<kFirstSide>(batch, i + j, lane, j))
         continue;
+      if (found_.size() == kMostFound) return;
       SurfaceFound& found = found_.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
         found.vertex[k] = batch.record[k][i + j] / 4;

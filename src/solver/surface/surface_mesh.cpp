@@ -217,44 +217,47 @@ class MeshBuilder {
 };
 
 /// Appends the segments of a rope. Each of them speaks for its first point, the last one for both.
-void append_rope(const state::Deformable& object, std::uint32_t row, SurfaceMeshes& surfaces) {
+void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfaces) {
   constexpr std::uint32_t kSegmentsOfCell = 4;
+  const state::Deformable& object = t.objects[row];
   const std::uint32_t segments = object.segments.count;
+  const auto joins = [&](std::uint32_t i) {
+    return i < segments && t.segments.joins(object.segments.first + i);
+  };
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();
   mesh.object = row;
   mesh.first_vertex = static_cast<std::uint32_t>(surfaces.particle.size());
   mesh.vertex_count = segments + 1;
+  std::vector<Vec3> centers;
   for (std::uint32_t i = 0; i <= segments; ++i) {
     const std::uint32_t vertex = mesh.first_vertex + i;
+    if (i % kSegmentsOfCell == 0 && i < segments) {
+      const auto first_edge = static_cast<std::uint32_t>(mesh.edges.size());
+      mesh.cells.push_back({.first_vertex = i, .first_edge = first_edge, .first_group = mesh.edge_groups++});
+      centers.push_back({static_cast<Real>(i), Real(0), Real(0)});
+    }
     surfaces.particle.push_back(object.particles.first + i);
     surfaces.mesh_of.push_back(static_cast<std::uint32_t>(surfaces.meshes.size() - 1));
     mesh.vertices.push_back(vertex);
     mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
-    if (i > 0) mesh.neighbors.push_back(vertex - 1);
-    if (i == segments) break;
-    mesh.neighbors.push_back(vertex + 1);
-    SurfaceEdge edge = {.vertex = {vertex, vertex + 1}};
-    edge.owns_vertex = i + 1 == segments ? 3 : 1;
-    mesh.edges.push_back(edge);
+    if (i > 0 && joins(i - 1)) mesh.neighbors.push_back(vertex - 1);
+    if (joins(i)) {
+      mesh.neighbors.push_back(vertex + 1);
+      SurfaceEdge edge = {.vertex = {vertex, vertex + 1}};
+      edge.owns_vertex = joins(i + 1) ? 1 : 3;
+      mesh.edges.push_back(edge);
+    }
+    mesh.cells.back().end_vertex = i + 1;
+    mesh.cells.back().end_edge = static_cast<std::uint32_t>(mesh.edges.size());
   }
   mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
-  std::vector<Vec3> centers;
-  for (std::uint32_t first = 0; first < segments; first += kSegmentsOfCell) {
-    const std::uint32_t end = std::min(first + kSegmentsOfCell, segments);
-    mesh.cells.push_back({.first_vertex = first,
-                          .end_vertex = end == segments ? segments + 1 : end,
-                          .first_edge = first,
-                          .end_edge = end,
-                          .first_group = mesh.edge_groups++});
-    centers.push_back({static_cast<Real>(first), Real(0), Real(0)});
-  }
   mesh.nodes = build_surface_tree(centers);
 }
 
 /// Appends the surface of an object; `vertex_of` is scratch memory by particle, full of kNone.
 void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::uint32_t>& vertex_of,
                     SurfaceMeshes& surfaces) {
-  if (t.objects[row].kind == PointRef::Kind::kRope) return append_rope(t.objects[row], row, surfaces);
+  if (t.objects[row].kind == PointRef::Kind::kRope) return append_rope(t, row, surfaces);
   std::vector<Triangle> triangles = state::surface_triangles(t, t.objects[row]);
   if (triangles.empty() || !t.objects[row].surface.rest_points) return;
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();

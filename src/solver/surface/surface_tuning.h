@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include <cstddef>
 #include <limits>
 
 /// \file
@@ -59,6 +60,10 @@ inline constexpr Real kCageDisplacement = Real(0.25);
 /// Share of the points that may be clipped to their cages before contacts are found anew [ratio]. At 0.01 a
 /// moving front was clipped for a whole substep.
 inline constexpr double kClippedShare = 0.002;
+
+/// Most pairs that are found between two surfaces: some hundred megabytes. More of them, where points fly
+/// apart, hold the whole group back.
+inline constexpr std::size_t kMostFound = std::size_t{1} << 22U;
 
 // Truncation.
 
