@@ -28,6 +28,20 @@ void for_lending_rows(std::span<const state::ElementContact> passes,
   }
 }
 
+Vec3 lever_of(const state::Tables& t, const state::Deformable& object, const PassMass& share) {
+  const DVec3 center = t.bodies.center[share.body] + vector_cast<double>(t.bodies.motion[share.body].dx);
+  return t.particles.position[share.particle].x + vector_cast<Real>(object.origin - center);
+}
+
+/// Upper bound of 1 / the mass that resists at `lever`, over all directions [1/kg].
+Real most_yielding(const state::Bodies& bodies, std::uint32_t body, Vec3 lever) {
+  const Real at_center = bodies.motion[body].inverse_mass;
+  Real sum = -Real(2) * at_center;
+  for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    sum += inverse_mass_at(bodies, body, axis, lever);
+  return std::max(sum, at_center);
+}
+
 }  // namespace
 
 void share_pass_masses(std::span<const state::ElementContact> passes,
@@ -35,11 +49,13 @@ void share_pass_masses(std::span<const state::ElementContact> passes,
                        std::vector<PassMass>& shares) {
   shares.clear();
   for_lending_rows(passes, solved_whole, t, [&](const state::ElementContact& row, Real count) {
-    const Real mass = Real(1) / (count * t.bodies.motion[row.body].inverse_mass);
     for (std::uint32_t k = 0; k < row.count; ++k) {
-      const Real share = row.weight[k] * mass;
-      if (share > Real(0) && t.particles.velocity[row.particle[k]].inverse_mass > Real(0))
-        shares.push_back({.particle = row.particle[k], .body = row.body, .mass = share});
+      if (!(row.weight[k] > Real(0)) || !(t.particles.velocity[row.particle[k]].inverse_mass > Real(0)))
+        continue;
+      PassMass share = {.particle = row.particle[k], .body = row.body};
+      share.lever = lever_of(t, t.objects[row.object], share);
+      share.mass = row.weight[k] / (count * most_yielding(t.bodies, row.body, share.lever));
+      shares.push_back(share);
     }
   });
   std::stable_sort(shares.begin(), shares.end(), [](const PassMass& a, const PassMass& b) {
@@ -47,7 +63,7 @@ void share_pass_masses(std::span<const state::ElementContact> passes,
   });
   for (PassMass& share : shares) {
     state::VelocityRecord& record = t.particles.velocity[share.particle];
-    share.velocity = t.bodies.motion[share.body].v;
+    share.velocity = state::velocity_now(t.bodies, share.body, share.lever);
     share.inverse_mass = record.inverse_mass;
     const Real own = Real(1) / record.inverse_mass;
     record.v += (share.mass / (own + share.mass)) * (share.velocity - record.v);
@@ -59,7 +75,7 @@ void give_back_pass_masses(std::span<const PassMass> shares, state::Tables& t) {
   for (auto share = shares.rbegin(); share != shares.rend(); ++share) {
     state::VelocityRecord& record = t.particles.velocity[share->particle];
     record.inverse_mass = share->inverse_mass;
-    push_body(share->body, share->mass * (record.v - share->velocity), {}, t.bodies);
+    push_body(share->body, share->mass * (record.v - share->velocity), share->lever, t.bodies);
   }
 }
 

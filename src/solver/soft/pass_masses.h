@@ -21,18 +21,20 @@ struct PassMass {
   std::uint32_t body = 0;
   Real mass = Real(0);          ///< Mass that was added [kg].
   Real inverse_mass = Real(0);  ///< That of the point alone [1/kg].
-  Vec3 velocity = {};           ///< Velocity of the body's center before [m/s].
+  Vec3 velocity = {};           ///< Velocity of the body there, before [m/s].
+  Vec3 lever = {};              ///< Vector from the body's center of mass to the point [m].
 };
 
-/// Shares the mass of each body that gives way out to the rows of `passes` that have it, and from these to
-/// their points, by weight. The two go on with their common momentum. Points of objects marked in
-/// `solved_whole` get nothing.
+/// Gives the points of `passes` what resists of the body that presses there along the direction in which it
+/// resists least, divided by the number of rows that have the body. So all impulses together turn the body no
+/// farther than any point wants it: with the mass that resists along the normal energy grew without bound.
+/// The two go on with their common momentum. Points of objects marked in `solved_whole` get nothing.
 void share_pass_masses(std::span<const state::ElementContact> passes,
                        std::span<const std::uint8_t> solved_whole, state::Tables& tables,
                        std::vector<PassMass>& shares);
 
 /// Takes the masses away. A point keeps its velocity; each body gets the impulse that has changed the
-/// velocity of its mass, at the point.
+/// velocity of its share, at the point.
 void give_back_pass_masses(std::span<const PassMass> shares, state::Tables& tables);
 
 }  // namespace hooke::solver

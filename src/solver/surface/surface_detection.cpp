@@ -141,9 +141,9 @@ SurfaceBox fit_cell(const SurfaceMesh& mesh, std::uint32_t number, SurfaceBoxes&
     boxes.triangles[number].set(lane, one);
   }
   if (mesh.is_rope()) {
-    box = at(mesh.edges[cell.first_edge].vertex[0]);
+    box = at(mesh.vertices[cell.first_vertex]);
     for (std::uint32_t edge = cell.first_edge; edge < cell.end_edge; ++edge)
-      box = join(box, at(mesh.edges[edge].vertex[1]));
+      box = join(box, join(at(mesh.edges[edge].vertex[0]), at(mesh.edges[edge].vertex[1])));
   }
   const std::uint32_t count = (cell.end_edge - cell.first_edge + 3) / 4 * 4;
   for (std::uint32_t lane = 0; lane < count; ++lane) {

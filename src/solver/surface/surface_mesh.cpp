@@ -231,8 +231,8 @@ void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfa
   std::vector<Vec3> centers;
   for (std::uint32_t i = 0; i <= segments; ++i) {
     const std::uint32_t vertex = mesh.first_vertex + i;
-    if (i % kSegmentsOfCell == 0 && i < segments) {
-      const auto first_edge = static_cast<std::uint32_t>(mesh.edges.size());
+    const auto first_edge = static_cast<std::uint32_t>(mesh.edges.size());
+    if (i == 0 || (joins(i) && first_edge - mesh.cells.back().first_edge == kSegmentsOfCell)) {
       mesh.cells.push_back({.first_vertex = i, .first_edge = first_edge, .first_group = mesh.edge_groups++});
       centers.push_back({static_cast<Real>(i), Real(0), Real(0)});
     }
