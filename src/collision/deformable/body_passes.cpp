@@ -1,7 +1,6 @@
 #include "collision/deformable/body_passes.h"
 
 #include "base/assert.h"
-#include "base/take_turns.h"
 #include "collision/deformable/deformable_tuning.h"
 #include "math/rotation.h"
 #include "state/body_frames.h"
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace hooke::collision {
 
@@ -117,13 +115,10 @@ class PassSearch {
   PassSearch(const state::Tables& t, Real left, Passes& finder) : t_(t), left_(left), f_(finder) {}
 
   void run() {
-    base::take_turns(f_.candidates, f_.candidates_before);
-    base::take_turns(f_.pairs, f_.pairs_before);
     f_.candidates.clear();
     f_.pairs.clear();
     foresee_bodies();
     for (std::uint32_t row = 0; row < f_.objects.size(); ++row) search_object(row);
-    carry_over();
   }
 
  private:
@@ -217,23 +212,6 @@ class PassSearch {
       if (is_hooked(f_.hooked, e.particle[k], body)) return false;
     }
     return any_free;
-  }
-
-  /// Normals of the search before are good first guesses.
-  void carry_over() {
-    auto old = f_.pairs_before.begin();
-    for (const Passes::Pair& pair : f_.pairs) {
-      const auto key = [](const Passes::Pair& p) { return std::tie(p.object, p.collider); };
-      while (old != f_.pairs_before.end() && key(*old) < key(pair)) ++old;
-      if (old == f_.pairs_before.end()) return;
-      if (key(*old) != key(pair)) continue;
-      std::uint32_t i = old->first;
-      for (std::uint32_t k = pair.first; k < pair.end; ++k) {
-        while (i < old->end && f_.candidates_before[i].element < f_.candidates[k].element) ++i;
-        if (i < old->end && f_.candidates_before[i].element == f_.candidates[k].element)
-          f_.candidates[k].normal = f_.candidates_before[i].normal;
-      }
-    }
   }
 
   const state::Tables& t_;

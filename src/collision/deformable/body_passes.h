@@ -18,8 +18,9 @@
 
 namespace hooke::collision {
 
-/// Memory of the stages that keep bodies from passing. Nothing in it decides a result of a later step: it
-/// says only which pairs are certainly apart.
+/// Memory of the stages that keep bodies from passing. Nothing in it lives from step to step but memory:
+/// which normal proves that two are apart decides, within a tenth of the distance they keep, whether they
+/// have a row.
 struct BodyPassFinder {
   /// A face of a cloth or solid, or a segment of a rope.
   struct Element {
@@ -82,8 +83,7 @@ struct BodyPassFinder {
   std::vector<Object> objects;
   std::vector<geometry::Box> blocks;  ///< From the object's origin.
   std::vector<Pair> pairs;            ///< In order of object and collider.
-  std::vector<Candidate> candidates, candidates_before;
-  std::vector<Pair> pairs_before;
+  std::vector<Candidate> candidates;
   std::vector<Real> body_reach;  ///< By body: candidates are complete until it has gone this far [m].
   std::vector<Real> body_gone;   ///< By body: upper bound of how far it has gone in this step [m].
   std::vector<state::ElementContact> passes;  ///< Those that would meet within the substep, by time.
