@@ -481,6 +481,7 @@ std::uint8_t comes_through(const MovingElement& element, const MovingShape& shap
 void place_body_passes(const state::Tables& t, BodyPassFinder& finder) {
   for (Passes::Pair& pair : finder.pairs) {
     pair.begin = state::pose_now(t.bodies, pair.body);
+    pair.begin_theta = t.bodies.motion[pair.body].theta_scaled;
     pair.shape = shape_of(t, pair);
   }
 }

@@ -54,6 +54,7 @@ struct BodyPassFinder {
     bool strays = false;     ///< Points or body do not move as they did when they were swept.
     MovingShape shape = {};  ///< From the object's origin, with its motion in this particle substep.
     Pose begin = {};         ///< Center of mass and rotation of the body when that began.
+    Vec3 begin_theta = {};   ///< Its scaled rotation since the start of the step then [sqrt(kg) m].
   };
 
   /// What an object does in a step.

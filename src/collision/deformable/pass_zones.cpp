@@ -29,8 +29,7 @@ class PassZones {
       const BodyPassFinder::Element& e = f_.elements[f_.candidates[f_.suspects[i]].element];
       const std::uint32_t body = points_ + pair.body;
       if (include(body)) {
-        const state::MotionRecord& m = t_.bodies.motion[pair.body];
-        begin_of(body) = {pair.begin, m.theta_scaled - h_ * m.omega_scaled};
+        begin_of(body) = {pair.begin, pair.begin_theta};
         any = true;
       }
       for (std::uint32_t k = 0; k < e.count; ++k) {
