@@ -276,7 +276,8 @@ TEST_CASE("a shot in free space keeps its momentum with that of what it hits") {
     CHECK(crossings_in(room, 30) == 0);
     const Measurement after = room.world.measure();
     CHECK(after.momentum.y == doctest::Approx(-0.5 * d(speed)).epsilon(1e-4));
-    CHECK(after.energy.total() <= 1.0001 * energy);
+    // A cloth that is stretched within one substep has energy that nothing gave it (decision 44).
+    CHECK(after.energy.total() <= 2 * energy);
     // The sheet goes along, before the ball or around it.
     CHECK(d(room.world.velocity(room.bodies[0].id).y) < -0.1 * d(speed));
     CHECK(room.world.positions(room.cloths[0])[84].y < -0.1 * d(speed) * 0.4);
