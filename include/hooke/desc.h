@@ -383,16 +383,10 @@ struct RopeDesc {
   Real drag_coefficient = Real(1.1);  ///< Coefficient of drag of a cylinder across the flow. [0, 1e6]
   Real charge = Real(0);              ///< Electric charge of the rope [C], shared out by mass. [-1e9, 1e9]
   Vec3 velocity = {};                 ///< Velocity of all points at the start [m/s].
-  /// Whether it touches itself, and other ropes that say so too in a way that knots hold: contact, friction
-  /// and stretch are solved together, all along, as a tube of `radius` with the friction of `contact`.
-  /// Segments that are less than pi x radius apart along the rope, half a turn of the tightest bend, do not
-  /// touch each other. Without it a rope does not touch itself, and touches other ropes at less cost, as it
-  /// does cloths and solids; what is taut or heavily loaded then gives way a little.
+  /// Whether it touches itself and other ropes that say so too, all along, as a tube of `radius` with the
+  /// friction of `contact`. Segments that are less than pi x radius apart along the rope, half a turn of the
+  /// tightest bend, do not touch each other. Without it ropes pass through each other, at no cost.
   bool touches_ropes = false;
-  /// Which other deformables it touches. Ropes that both have a `repulsion_strength` do not touch each other,
-  /// as hair by the thousand does not. A rope does not touch what three hooks or more sew it to, nor what
-  /// slides along it on a hook.
-  FilterDesc filter = {};
   /// Repulsion s [N m^2], not negative; 0 for none. Points of ropes that are nearer than r =
   /// `repulsion_range` push each other away with the force s (1 / d^2 - 1 / r^2), d their distance; of two
   /// ropes the geometric mean of s counts and the mean of r. Points less than pi r / 2 apart along one rope

@@ -65,7 +65,7 @@ struct RestShape {
 /// How a deformable touches others and itself (solver/surface). The three lengths follow from the description
 /// and the form at rest.
 struct Surface {
-  /// Positions at rest by row [m]: which parts are near each other. Set where there are triangles.
+  /// Positions at rest by row [m]: which parts are near each other. Set where there is a surface.
   std::shared_ptr<const std::vector<Vec3>> rest_points = {};
   bool self_contact = false;     ///< It touches itself.
   FilterDesc filter = {};        ///< Which other deformables it touches.

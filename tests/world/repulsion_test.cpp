@@ -183,7 +183,6 @@ TEST_CASE("repulsion: strands that hang together stay apart with it") {
       desc.bend_stiffness = Real(1e-4);
       desc.bend_damping = Real(0.1);
       desc.pins = {{.point = 0}, {.point = 1}};
-      desc.filter.group = -1;  // Without repulsion they would touch.
       strands.push_back(take(world.add_rope(desc)));
     }
     run(world, 240);

@@ -271,7 +271,6 @@ TEST_SUITE("world/rope") {
       desc.extension_max = k % 3 == 1 ? Real(0.05) : kRigid;
       desc.bend_stiffness = k < 10 ? Real(0) : Real(1e-4);  // only neighbors that both bend share lanes
       if (k % 4 == 0) desc.pins = {};
-      desc.filter.group = -1;  // They lie so near that they would touch.
       return desc;
     };
     const auto places = [](const World& world, RopeId rope) {

@@ -51,8 +51,7 @@ class Changing {
         solids_.push_back(take(world_.add_solid(jelly_at(place))));
         break;
       case 3:
-        // They would begin inside of cloths, which throws both about.
-        ropes_.push_back(take(world_.add_rope({.hook_point = place, .masses = 6, .filter = {.mask = 0}})));
+        ropes_.push_back(take(world_.add_rope({.hook_point = place, .masses = 6})));
         break;
       case 4:
         add_particles(place);

@@ -70,7 +70,6 @@ Rows four_cords(const CheckSetting& setting) {
     RopeDesc desc = cord({}, {0, -1, 0}, 8, 1e-3);
     desc.stiffness = real(stiffness);
     desc.inner_friction = real(stiffness / 100);
-    desc.filter.group = -1;  // All four are in one line, and would push each other out of it.
     hooks.push_back(tie_to(rig, load, rig.add(desc), 8, {0, -1, 0}));
   }
   rig.run(8);

@@ -2,8 +2,6 @@
 
 #include "state/tables.h"
 
-#include <span>
-
 namespace hooke::solver {
 
 /// Whether an element contact is solved together with the body that its object touches, in a coupled group
@@ -19,10 +17,6 @@ namespace hooke::solver {
 /// and the inverse mass sum w_i^2 / m_i, to which that of the body is added if it gives way. An overlap is
 /// undone in the position of the points only, in the same shares.
 void solve_element_contacts(Real h, state::Tables& tables);
-
-/// Solves rows of collision/deformable/body_passes.h, row after row, in order of time, with friction. What
-/// has come nearer than its distance is pushed back at 1 m/s at most.
-void stop_passes(Real h, std::span<state::ElementContact> passes, state::Tables& tables);
 
 /// Moves the points of a contact out of the body that they overlap.
 void push_out(const state::ElementContact& contact, Real h, state::Tables& tables);
