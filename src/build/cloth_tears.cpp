@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "geometry/convex/mass_properties.h"
 #include "math/rotation.h"
+#include "state/particle_numbers.h"
 #include "state/tables.h"
 
 #include <algorithm>
@@ -322,29 +323,13 @@ void erase_rows(Table& table, const std::vector<std::uint32_t>& rows) {
   });
 }
 
-/// Makes room for one particle behind those of an object, in everything that has rows of particles.
+/// Raises the numbers of particles behind those of an object, for one that is added to it. Only later
+/// objects, and what holds them, have such numbers.
 void shift_particles(std::uint32_t object, Tables& t) {
+  if (object + 1 == t.objects.size()) return;
   const std::uint32_t at = t.objects[object].particles.end();
   const auto shift = [at](std::uint32_t& p) { p += p >= at ? 1 : 0; };
-  const auto behind = [](auto& column, state::Rows rows) { return std::span(column).subspan(rows.end()); };
-  const Deformable& cloth = t.objects[object];
-  for (std::uint32_t& p : behind(t.springs.particle_a, cloth.springs)) shift(p);
-  for (std::uint32_t& p : behind(t.springs.particle_b, cloth.springs)) shift(p);
-  for (state::Bends::Stencil& s : behind(t.bends.stencil, cloth.bends)) {
-    for (std::uint32_t* p : {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b}) shift(*p);
-  }
-  for (state::Triangles::Corners& c : behind(t.triangles.corners, cloth.triangles)) {
-    for (std::uint32_t* p : {&c.a, &c.b, &c.c}) shift(*p);
-  }
-  for (state::Tetrahedra::Corners& c : behind(t.tetrahedra.corners, cloth.tetrahedra)) {
-    for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) shift(*p);
-  }
-  for (state::Pin& pin : t.pins) shift(pin.particle);
-  for (state::Hook& hook : t.hooks) {
-    for (state::HookPlace* end : {&hook.a, &hook.b}) {
-      for (std::uint32_t i = 0; i < end->particle_count; ++i) shift(end->particle[i]);
-    }
-  }
+  state::for_each_particle_number(t, t.objects[object + 1], shift);
   for (std::uint32_t& p : t.contacts.particle) shift(p);
   for (state::ElementContact& contact : t.element_contacts) {
     for (std::uint32_t i = 0; i < contact.count; ++i) shift(contact.particle[i]);

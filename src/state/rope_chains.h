@@ -13,12 +13,17 @@
 
 namespace hooke::state {
 
+/// Whether a node of a rope and the next one belong to one chain.
+[[nodiscard]] inline bool goes_on(const Deformable& rope, const Segments& segments, std::uint32_t node) {
+  return node < rope.segments.count && segments.hold[rope.segments.first + node] != SegmentHold::kGone;
+}
+
 /// Calls visit(first, count) with the nodes of each chain, counted along the rope.
 template <class Visit>
 void for_each_chain(const Deformable& rope, const Segments& segments, Visit&& visit) {
   std::uint32_t first = 0;
   for (std::uint32_t i = 0; rope.has_gaps && i < rope.segments.count; ++i) {
-    if (segments.hold[rope.segments.first + i] != SegmentHold::kGone) continue;
+    if (goes_on(rope, segments, i)) continue;
     visit(first, i + 1 - first);
     first = i + 1;
   }
@@ -30,7 +35,7 @@ void for_each_chain(const Deformable& rope, const Segments& segments, Visit&& vi
                                                   std::uint32_t particle) {
   if (!rope.has_gaps) return rope.particles.first;
   std::uint32_t node = particle - rope.particles.first;
-  while (node > 0 && segments.hold[rope.segments.first + node - 1] != SegmentHold::kGone) --node;
+  while (node > 0 && goes_on(rope, segments, node - 1)) --node;
   return rope.particles.first + node;
 }
 

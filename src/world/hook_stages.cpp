@@ -139,9 +139,7 @@ void remove_hooks(state::Tables& t, Holds&& holds) {
 bool stay_on_rope(const state::Tables& t, HookPlace& place) {
   const state::Deformable& rope = t.objects[place.object];
   const std::uint32_t node = place.particle[0] - rope.particles.first;
-  const auto goes_on = [&](std::uint32_t i) {
-    return i < rope.segments.count && t.segments.hold[rope.segments.first + i] != state::SegmentHold::kGone;
-  };
+  const auto goes_on = [&](std::uint32_t i) { return state::goes_on(rope, t.segments, i); };
   if (goes_on(node)) return true;
   const bool before = node > 0 && goes_on(node - 1);
   const bool behind = goes_on(node + 1);

@@ -2,12 +2,12 @@
 
 #include "base/assert.h"
 #include "build/checks.h"
+#include "state/particle_numbers.h"
 #include "state/sleeping_pairs.h"
 #include "world/hook_stages.h"
 
 #include <algorithm>
 #include <array>
-#include <span>
 
 namespace hooke::world {
 
@@ -24,36 +24,13 @@ void erase_rows(Table& table, Rows rows) {
       table, [&](auto& column) { column.erase(column.begin() + rows.first, column.begin() + rows.end()); });
 }
 
-/// Calls `visit` with each number of a particle in the tables' rows from those of `object` on.
-template <class Visit>
-void for_each_particle_number(Tables& t, const Deformable& object, Visit visit) {
-  const auto behind = [](auto& column, Rows rows) { return std::span(column).subspan(rows.first); };
-  for (std::uint32_t& p : behind(t.springs.particle_a, object.springs)) visit(p);
-  for (std::uint32_t& p : behind(t.springs.particle_b, object.springs)) visit(p);
-  for (state::Bends::Stencil& s : behind(t.bends.stencil, object.bends)) {
-    for (std::uint32_t* p : {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b}) visit(*p);
-  }
-  for (state::Triangles::Corners& c : behind(t.triangles.corners, object.triangles)) {
-    for (std::uint32_t* p : {&c.a, &c.b, &c.c}) visit(*p);
-  }
-  for (state::Tetrahedra::Corners& c : behind(t.tetrahedra.corners, object.tetrahedra)) {
-    for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) visit(*p);
-  }
-}
-
 /// Lowers the row numbers of particles behind those of a removed object, wherever they are stored. In the
 /// tables only rows of later objects have such numbers; these rows now begin where those of `gone` did.
 void renumber_particles(Tables& t, const Deformable& gone) {
   const auto moved = [&](std::uint32_t& p) {
     if (p >= gone.particles.end()) p -= gone.particles.count;
   };
-  for_each_particle_number(t, gone, moved);
-  for (state::Pin& pin : t.pins) moved(pin.particle);
-  for (state::Hook& hook : t.hooks) {
-    for (state::HookPlace* end : {&hook.a, &hook.b}) {
-      for (std::uint32_t i = 0; i < end->particle_count; ++i) moved(end->particle[i]);
-    }
-  }
+  state::for_each_particle_number(t, gone, moved);
 }
 
 /// Lowers the object rows in hooks, because objects behind `removed` have moved up by one row.

@@ -17,14 +17,6 @@ namespace {
 constexpr int kSubsteps[] = {4, 8, 32};
 constexpr double kStep = 1.0 / 60;
 
-WorldDesc space(int substeps, int workers = 1) {
-  WorldDesc desc = empty_space();
-  desc.substeps = substeps;
-  desc.workers = workers;
-  desc.sleeping = false;
-  return desc;
-}
-
 BodyId add_box(World& world, DVec3 position, double mass, Vec3 velocity, double half = 0.1) {
   const Real side = static_cast<Real>(half);
   return take(world.add_body({.kind = BodyKind::kDynamic,
@@ -56,7 +48,7 @@ TEST_SUITE("world/breaks") {
   TEST_CASE("a hook that breaks pulls with its strength for one substep, whatever its kind") {
     for (const int substeps : kSubsteps) {
       for (const HookKind kind : {HookKind::kBall, HookKind::kHinge, HookKind::kFixed, HookKind::kDistance}) {
-        World world = make_world(space(substeps));
+        World world = make_world(sleepless_space(substeps));
         const BodyId box = add_box(world, {1, 2, 3}, 3, {15, 0, 0});
         const HookId hook = take(world.add_hook(hook_at(kind, box, {1, 2, 3}, 40)));
         run(world, 1);
@@ -75,7 +67,7 @@ TEST_SUITE("world/breaks") {
 
   TEST_CASE("a weld that breaks by torque slows a rotation by its strength times one substep") {
     for (const int substeps : kSubsteps) {
-      World world = make_world(space(substeps));
+      World world = make_world(sleepless_space(substeps));
       const BodyId box = add_box(world, {}, 6, {}, 0.5);  // I = 6 / 6 kg m^2
       REQUIRE(world.set_angular_velocity(box, {0, 9, 0}).has_value());
       take(world.add_hook({.kind = HookKind::kFixed, .b = {.body = box}, .break_torque = 50}));
@@ -87,7 +79,7 @@ TEST_SUITE("world/breaks") {
   }
 
   TEST_CASE("a motor that is stronger than its hinge breaks it, and then turns nothing") {
-    World world = make_world(space(8));
+    World world = make_world(sleepless_space(8));
     const BodyId wheel = add_box(world, {}, 6, {}, 0.5);
     take(world.add_hook({.kind = HookKind::kHinge,
                          .b = {.body = wheel},
@@ -102,7 +94,7 @@ TEST_SUITE("world/breaks") {
   TEST_CASE(
       "a ball that breaks a pane off four weak hooks loses what the pane gains and what the hooks take") {
     for (const int substeps : kSubsteps) {
-      WorldDesc desc = space(substeps);
+      WorldDesc desc = sleepless_space(substeps);
       World world = make_world(desc);
       const BodyId pane = take(world.add_body({.kind = BodyKind::kDynamic,
                                                .shape = Shape::box({Real(0.01), Real(0.4), Real(0.6)}),
@@ -153,7 +145,7 @@ TEST_SUITE("world/breaks") {
 
   TEST_CASE("a tow rope pulls its load with no more than the strength of its hook") {
     for (const int substeps : kSubsteps) {
-      World world = make_world(space(substeps));
+      World world = make_world(sleepless_space(substeps));
       const BodyId truck = take(world.add_body(
           {.kind = BodyKind::kKinematic, .shape = Shape::box({Real(0.2), Real(0.2), Real(0.2)})}));
       const BodyId load = add_box(world, {3, 0, 0}, 30, {});
@@ -176,7 +168,7 @@ TEST_SUITE("world/breaks") {
   TEST_CASE("of a chain that is pulled the weakest hook breaks, and the others hold") {
     for (const bool loop : {false, true}) {
       for (const bool roped : {false, true}) {
-        World world = make_world(space(8));
+        World world = make_world(sleepless_space(8));
         std::vector<BodyId> links;
         for (int i = 0; i < 5; ++i) links.push_back(add_box(world, {0.3 * i, 0, 0}, 1, {}));
         HookId weakest;
@@ -251,7 +243,7 @@ TEST_SUITE("world/breaks") {
 
   TEST_CASE("a wall of bricks that are glued loses energy only, as it is shot through") {
     for (const bool coupled : {false, true}) {
-      World world = make_world(space(8));
+      World world = make_world(sleepless_space(8));
       std::vector<BodyId> bricks;
       for (int y = 0; y < 4; ++y) {
         for (int x = 0; x < 4; ++x) bricks.push_back(add_box(world, {0.2 * x, 0.2 * y, 0}, 1, {}));

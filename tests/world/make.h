@@ -42,6 +42,15 @@ inline WorldDesc empty_space() {
   return desc;
 }
 
+/// A still world in which nothing sleeps.
+inline WorldDesc sleepless_space(int substeps, int workers = 1) {
+  WorldDesc desc = empty_space();
+  desc.substeps = substeps;
+  desc.workers = workers;
+  desc.sleeping = false;
+  return desc;
+}
+
 /// Worlds that `fill` fills have the same bits with any number of workers, and after a restore.
 template <class Fill>
 void check_same_bits(const WorldDesc& desc, Fill&& fill) {

@@ -18,14 +18,6 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;
 
-WorldDesc space(int substeps, int workers = 1) {
-  WorldDesc desc = empty_space();
-  desc.substeps = substeps;
-  desc.workers = workers;
-  desc.sleeping = false;
-  return desc;
-}
-
 /// A rope that hangs from the origin, with `masses` points, 1 m long.
 RopeDesc hanging(int masses, Real mass, Real strength) {
   return {.direction = {0, -1, 0}, .total_mass = mass, .masses = masses, .strength = strength};
@@ -48,7 +40,7 @@ TEST_SUITE("world/snap") {
   TEST_CASE("a rope that is jerked carries its strength for one substep, and the load keeps the rest") {
     for (const int substeps : {4, 8, 32}) {
       for (const int masses : {2, 3, 11}) {
-        World world = make_world(space(substeps));
+        World world = make_world(sleepless_space(substeps));
         const RopeId rope = take(world.add_rope(hanging(masses, Real(0.01), 200)));
         const BodyId box = take(world.add_body({.kind = BodyKind::kDynamic,
                                                 .shape = Shape::sphere(Real(0.1)),
@@ -76,7 +68,7 @@ TEST_SUITE("world/snap") {
 
   TEST_CASE("a soft rope breaks at its strength, and never carries more, at any length of the substep") {
     for (const int substeps : {4, 8, 32}) {
-      World world = make_world(space(substeps));
+      World world = make_world(sleepless_space(substeps));
       RopeDesc desc = hanging(11, Real(0.1), 200);
       desc.stiffness = 2e4;
       desc.loads = {{10, 10}};
@@ -94,7 +86,7 @@ TEST_SUITE("world/snap") {
   }
 
   TEST_CASE("a rope too heavy for itself breaks where it hangs, and the rest falls freely") {
-    WorldDesc desc = space(8);
+    WorldDesc desc = sleepless_space(8);
     desc.gravity = {0, -10, 0};
     World world = make_world(desc);
     const RopeId rope = take(world.add_rope(hanging(21, 2, 18)));  // its weight is 20 N
@@ -108,7 +100,7 @@ TEST_SUITE("world/snap") {
   }
 
   TEST_CASE("a rope that can take its load holds for good") {
-    WorldDesc desc = space(8);
+    WorldDesc desc = sleepless_space(8);
     desc.gravity = {0, -10, 0};
     World world = make_world(desc);
     RopeDesc heavy = hanging(11, 1, 112);
@@ -120,7 +112,7 @@ TEST_SUITE("world/snap") {
 
   TEST_CASE("a snap keeps momentum and makes no energy") {
     for (const Real bend : {Real(0), Real(0.01)}) {
-      World world = make_world(space(8));
+      World world = make_world(sleepless_space(8));
       RopeDesc desc = hanging(13, Real(0.6), 50);
       desc.pins = {};
       desc.bend_stiffness = bend;
@@ -141,7 +133,7 @@ TEST_SUITE("world/snap") {
   }
 
   TEST_CASE("parts of a snapped rope fall and lie apart, and no gap holds a body") {
-    WorldDesc desc = space(8);
+    WorldDesc desc = sleepless_space(8);
     desc.gravity = {0, -10, 0};
     World world = make_world(desc);
     RopeDesc line = {.points = {}, .strength = 60};
@@ -168,7 +160,7 @@ TEST_SUITE("world/snap") {
 
   TEST_CASE(
       "a bead stays on the part of the rope it is on, and a hook within the gap goes to the nearer end") {
-    World world = make_world(space(8));
+    World world = make_world(sleepless_space(8));
     const RopeId rope = take(world.add_rope(hanging(6, Real(0.1), 100)));
     const BodyId bead = take(world.add_body({.kind = BodyKind::kDynamic,
                                              .shape = Shape::sphere(Real(0.02)),
@@ -193,7 +185,7 @@ TEST_SUITE("world/snap") {
   }
 
   TEST_CASE("ropes that touch ropes snap, and their parts go on touching") {
-    WorldDesc desc = space(8);
+    WorldDesc desc = sleepless_space(8);
     desc.gravity = {0, -10, 0};
     World world = make_world(desc);
     RopeDesc line = {.points = {}, .radius = Real(0.02), .strength = 40, .touches_ropes = true};
@@ -217,7 +209,7 @@ TEST_SUITE("world/snap") {
   TEST_CASE("the same bits for any workers, and after a restoration before a snap") {
     std::array<std::uint64_t, 3> hashes = {};
     for (int k = 0; k < 3; ++k) {
-      WorldDesc desc = space(8, k == 1 ? 4 : 1);
+      WorldDesc desc = sleepless_space(8, k == 1 ? 4 : 1);
       desc.gravity = {0, -10, 0};
       World world = make_world(desc);
       std::vector<RopeId> ropes;
@@ -245,7 +237,7 @@ TEST_SUITE("world/snap") {
   }
 
   TEST_CASE("a strength must be positive and finite") {
-    World world = make_world(space(8));
+    World world = make_world(sleepless_space(8));
     for (const Real bad : {Real(0), Real(-1), kRigid, std::numeric_limits<Real>::quiet_NaN()}) {
       const Result<RopeId> rope = world.add_rope({.strength = bad});
       REQUIRE(!rope.has_value());

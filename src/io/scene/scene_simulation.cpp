@@ -175,28 +175,26 @@ Loaded<std::unique_ptr<SimulationData>> build(Scene scene, const Placement& plac
   return loaded;
 }
 
-/// Notes the first break of each rope that snapped.
-void note_snapped_ropes(SimulationData& data) {
-  for (const RopeBreakEvent& event : data.world.events().rope_breaks) {
-    const auto object = std::find_if(data.objects.begin(), data.objects.end(),
-                                     [&](const SceneObject& one) { return one.rope == event.rope; });
-    if (object == data.objects.end() || object->broken) continue;
-    data.saved_objects = nullptr;
-    object->broken = true;
-    object->broke = {.force = event.force, .time = event.time};
-  }
+/// Notes how an object broke first. Null if it is none of the scene's, or had broken before.
+SceneObject* note_first_break(SimulationData& data, std::vector<SceneObject>::iterator object,
+                              const BreakEvent& how) {
+  if (object == data.objects.end() || object->broken) return nullptr;
+  data.saved_objects = nullptr;
+  object->broken = true;
+  object->broke = how;
+  return &*object;
 }
 
-/// Notes the first tear of each cloth.
-void note_torn_cloths(SimulationData& data) {
+/// Notes the first break of each rope that snapped, and the first tear of each cloth.
+void note_snaps_and_tears(SimulationData& data) {
+  const auto find = [&](auto is_it) { return std::find_if(data.objects.begin(), data.objects.end(), is_it); };
+  for (const RopeBreakEvent& event : data.world.events().rope_breaks) {
+    const auto rope = find([&](const SceneObject& one) { return one.rope == event.rope; });
+    note_first_break(data, rope, {.force = event.force, .time = event.time});
+  }
   for (const ClothTearEvent& event : data.world.events().tears) {
-    const auto object = std::find_if(data.objects.begin(), data.objects.end(),
-                                     [&](const SceneObject& one) { return one.cloth == event.cloth; });
-    if (object == data.objects.end() || object->broken) continue;
-    data.saved_objects = nullptr;
-    object->broken = true;
-    object->broke = {.time = event.time};
-    object->tore_at = event.strain;
+    const auto cloth = find([&](const SceneObject& one) { return one.cloth == event.cloth; });
+    if (SceneObject* torn = note_first_break(data, cloth, {.time = event.time})) torn->tore_at = event.strain;
   }
 }
 
@@ -247,8 +245,7 @@ StepReport Simulation::step() {
   apply_due_events(*data_);
   const StepReport report = data_->world.step(data_->scene.dt);
   note_broken_hooks(*data_);
-  note_snapped_ropes(*data_);
-  note_torn_cloths(*data_);
+  note_snaps_and_tears(*data_);
   data_->contacts = report.contacts;
   if (report.moved) evaluate_due(*data_);
   return report;

@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "solver/coupled/coupled_groups.h"
 #include "solver/coupled/coupled_tuning.h"
+#include "state/rope_chains.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,10 +33,7 @@ struct Line {
     return square > 0 ? dot(x - at(i), d) / square : 0;
   }
   /// Whether `node` and the next are joined.
-  [[nodiscard]] bool goes_on(std::uint32_t node) const {
-    return node < rope.segments.count &&
-           t.segments.hold[rope.segments.first + node] != state::SegmentHold::kGone;
-  }
+  [[nodiscard]] bool goes_on(std::uint32_t node) const { return state::goes_on(rope, t.segments, node); }
   /// Direction from the node before to the node behind; the ends of a chain have one neighbor only.
   [[nodiscard]] DVec3 tangent(std::uint32_t node) const {
     const std::uint32_t before = node > 0 && goes_on(node - 1) ? node - 1 : node;
