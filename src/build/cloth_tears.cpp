@@ -368,10 +368,24 @@ void add_particle(std::uint32_t object, const Crack& crack, Tables& t) {
   cloth.surface.rest_points = std::move(rest);
 }
 
-/// Moves springs of the point to the side that they are on. Those along the crack are there twice, and those
-/// across it go.
-void part_springs(std::uint32_t object, const Crack& crack, Tables& t) {
-  Deformable& cloth = t.objects[object];
+/// Erases rows of an object, in ascending order; rows of later objects move up.
+template <class Table>
+void erase_rows_of(std::uint32_t object, state::Rows Deformable::*rows,
+                   const std::vector<std::uint32_t>& gone, Table& table, Tables& t) {
+  erase_rows(table, gone);
+  const auto count = static_cast<std::uint32_t>(gone.size());
+  (t.objects[object].*rows).count -= count;
+  for (std::size_t i = object + 1; i < t.objects.size(); ++i) (t.objects[i].*rows).first -= count;
+}
+
+/// Springs that do not just stay or move with the point.
+struct PartedSprings {
+  std::vector<std::uint32_t> gone;     ///< Those across the crack.
+  std::vector<std::uint32_t> doubled;  ///< Those along it.
+};
+
+/// Moves springs of the point to the side that they are on, and lists the others.
+PartedSprings move_springs(const Deformable& cloth, const Crack& crack, Tables& t) {
   state::Springs& springs = t.springs;
   const std::vector<Opposite> opposites = list_opposites(t, cloth, crack);
   const auto wings = list_wings(t, crack);
@@ -380,8 +394,7 @@ void part_springs(std::uint32_t object, const Crack& crack, Tables& t) {
                                  [other](const Opposite& o) { return o.particle == other; });
     return at != opposites.end() ? at->side : CrackSide::kNone;
   };
-  std::vector<std::uint32_t> gone;
-  std::vector<std::uint32_t> doubled;
+  PartedSprings parted;
   for (std::uint32_t i = cloth.springs.first; i < cloth.springs.end(); ++i) {
     std::uint32_t& a = springs.particle_a[i];
     std::uint32_t& b = springs.particle_b[i];
@@ -389,33 +402,39 @@ void part_springs(std::uint32_t object, const Crack& crack, Tables& t) {
       if (springs.kind[i] != SpringClass::kShear) continue;
       const std::array<std::uint32_t, 2> pair = {std::min(a, b), std::max(a, b)};
       const bool crosses = std::find(wings.begin(), wings.end(), pair) != wings.end();
-      if (crosses) gone.push_back(i);
+      if (crosses) parted.gone.push_back(i);
       continue;
     }
     const std::uint32_t other = a == crack.point ? b : a;
     CrackSide side = side_of(t, crack, {&other, 1});
     if (side == CrackSide::kNone) side = side_across(other);
     if (side == CrackSide::kMoved) (a == crack.point ? a : b) = crack.added;
-    if (side == CrackSide::kBoth) doubled.push_back(i);
-    if (side == CrackSide::kNone) gone.push_back(i);
+    if (side == CrackSide::kBoth) parted.doubled.push_back(i);
+    if (side == CrackSide::kNone) parted.gone.push_back(i);
   }
-  for (const std::uint32_t i : doubled) {
+  return parted;
+}
+
+/// Moves springs of the point to the side that they are on. Those along the crack are there twice, and those
+/// across it go.
+void part_springs(std::uint32_t object, const Crack& crack, Tables& t) {
+  Deformable& cloth = t.objects[object];
+  state::Springs& springs = t.springs;
+  const PartedSprings parted = move_springs(cloth, crack, t);
+  for (const std::uint32_t i : parted.doubled) {
     const std::uint32_t copy = cloth.springs.end();
     insert_copy(springs, i, copy);
     (springs.particle_a[copy] == crack.point ? springs.particle_a : springs.particle_b)[copy] = crack.added;
     ++cloth.springs.count;
   }
-  erase_rows(springs, gone);
-  cloth.springs.count -= static_cast<std::uint32_t>(gone.size());
-  for (std::size_t i = object + 1; i < t.objects.size(); ++i) {
-    t.objects[i].springs.first += static_cast<std::uint32_t>(doubled.size());
-    t.objects[i].springs.first -= static_cast<std::uint32_t>(gone.size());
-  }
+  for (std::size_t i = object + 1; i < t.objects.size(); ++i)
+    t.objects[i].springs.first += static_cast<std::uint32_t>(parted.doubled.size());
+  erase_rows_of(object, &Deformable::springs, parted.gone, springs, t);
 }
 
 /// Moves bends likewise. Those about an edge along the crack go.
 void part_bends(std::uint32_t object, const Crack& crack, Tables& t) {
-  Deformable& cloth = t.objects[object];
+  const Deformable& cloth = t.objects[object];
   std::vector<std::uint32_t> gone;
   for (std::uint32_t i = cloth.bends.first; i < cloth.bends.end(); ++i) {
     state::Bends::Stencil& s = t.bends.stencil[i];
@@ -434,10 +453,7 @@ void part_bends(std::uint32_t object, const Crack& crack, Tables& t) {
       **own = crack.added;
     }
   }
-  erase_rows(t.bends, gone);
-  cloth.bends.count -= static_cast<std::uint32_t>(gone.size());
-  for (std::size_t i = object + 1; i < t.objects.size(); ++i)
-    t.objects[i].bends.first -= static_cast<std::uint32_t>(gone.size());
+  erase_rows_of(object, &Deformable::bends, gone, t.bends, t);
 }
 
 /// Bit of the triangle's edge from or to `point`, to or from `end`; 0 if it has none.
@@ -451,19 +467,17 @@ std::uint8_t edge_bit(const Corners& corners, std::uint32_t point, std::uint32_t
   return 0;
 }
 
-/// Each edge along the crack belongs to a triangle on either side of it.
-void own_edges(const Crack& crack, Tables& t) {
-  for (const std::vector<std::uint32_t>* side : {&crack.kept, &crack.moved}) {
-    for (const std::uint32_t triangle : *side) {
-      const Corners corners = corners_of(t, triangle);
-      for (const std::uint32_t end : corners) {
-        if (end == crack.point || side_of(t, crack, {&end, 1}) != CrackSide::kBoth) continue;
-        const auto owns = [&](std::uint32_t other) {
-          return (t.triangles.own_edges[other] & edge_bit(corners_of(t, other), crack.point, end)) != 0;
-        };
-        if (std::none_of(side->begin(), side->end(), owns))
-          t.triangles.own_edges[triangle] |= edge_bit(corners, crack.point, end);
-      }
+/// Each edge along the crack belongs to a triangle of this side of it.
+void own_edges(const Crack& crack, const std::vector<std::uint32_t>& side, Tables& t) {
+  for (const std::uint32_t triangle : side) {
+    const Corners corners = corners_of(t, triangle);
+    for (const std::uint32_t end : corners) {
+      if (end == crack.point || side_of(t, crack, {&end, 1}) != CrackSide::kBoth) continue;
+      const auto owns = [&](std::uint32_t other) {
+        return (t.triangles.own_edges[other] & edge_bit(corners_of(t, other), crack.point, end)) != 0;
+      };
+      if (std::none_of(side.begin(), side.end(), owns))
+        t.triangles.own_edges[triangle] |= edge_bit(corners, crack.point, end);
     }
   }
 }
@@ -503,7 +517,8 @@ void split(std::uint32_t object, const Crack& crack, Tables& t) {
   add_particle(object, crack, t);
   part_springs(object, crack, t);
   part_bends(object, crack, t);
-  own_edges(crack, t);
+  own_edges(crack, crack.kept, t);
+  own_edges(crack, crack.moved, t);
   part_hooks(object, crack, t);
   move_corners(crack, t);
   Deformable& cloth = t.objects[object];

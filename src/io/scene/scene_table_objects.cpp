@@ -149,8 +149,13 @@ const Kind& kind_of<SceneArray>() {
 
 namespace {
 
-/// Has a rope's keys under the names of the paper's builder, then the others.
-std::vector<Field> rope_rows() {
+std::vector<Field> joined(std::vector<Field> first, const std::vector<Field>& last) {
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
+/// Has a rope's keys under the names of the paper's builder, then the others of what it is made of.
+std::vector<Field> rope_form_rows() {
   constexpr auto kDesc = &SceneRope::desc;
   return {
       field<kDesc, &RopeDesc::hook_point>("hook_point", "m", kAny, "Position of the first point."),
@@ -193,27 +198,37 @@ std::vector<Field> rope_rows() {
       field<kDesc, &RopeDesc::points>(
           "points", "m", kAny,
           "Replaces `hook_point`, `direction`, `masses`, `length_at_rest`: the points, taken as at rest."),
-      field<&SceneRope::pins>("pins", "", kAny,
-                              "Points that are held; the first one by default, `[]` for none."),
-      field<&SceneRope::loads>("loads", "", kAny, "Masses added to points."),
-      field<kDesc, &RopeDesc::radius>("radius", "m", kPositive, "Of the strand: for contact, wind, drawing."),
-      field<kDesc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                "Of a cylinder across the flow."),
-      field<kDesc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
-      field<kDesc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
-      field<kDesc, &RopeDesc::touches_ropes>(
-          "touches_ropes", "", kAny, "It touches other ropes that say so too, and itself: knots hold."),
-      field<kDesc, &RopeDesc::repulsion_strength>(
-          "repulsion_strength", "N m^2", kNotNegative,
-          "s: points of ropes with one push each other away with s (1 "
-          "/ d^2 - 1 / r^2): thick hair. 0: none."),
-      field<kDesc, &RopeDesc::repulsion_range>(
-          "repulsion_range", "m", kPositive,
-          "r, best above the distance of points: none of it farther away."),
   };
 }
 
-std::vector<Field> cloth_rows() {
+std::vector<Field> rope_rows() {
+  constexpr auto kDesc = &SceneRope::desc;
+  return joined(
+      rope_form_rows(),
+      {
+          field<&SceneRope::pins>("pins", "", kAny,
+                                  "Points that are held; the first one by default, `[]` for none."),
+          field<&SceneRope::loads>("loads", "", kAny, "Masses added to points."),
+          field<kDesc, &RopeDesc::radius>("radius", "m", kPositive,
+                                          "Of the strand: for contact, wind, drawing."),
+          field<kDesc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                    "Of a cylinder across the flow."),
+          field<kDesc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+          field<kDesc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+          field<kDesc, &RopeDesc::touches_ropes>(
+              "touches_ropes", "", kAny, "It touches other ropes that say so too, and itself: knots hold."),
+          field<kDesc, &RopeDesc::repulsion_strength>(
+              "repulsion_strength", "N m^2", kNotNegative,
+              "s: points of ropes with one push each other away with s (1 "
+              "/ d^2 - 1 / r^2): thick hair. 0: none."),
+          field<kDesc, &RopeDesc::repulsion_range>(
+              "repulsion_range", "m", kPositive,
+              "r, best above the distance of points: none of it farther away."),
+      });
+}
+
+/// Has what a cloth is made of.
+std::vector<Field> cloth_form_rows() {
   constexpr auto kDesc = &SceneCloth::desc;
   return {
       field<kDesc, &ClothDesc::columns>("columns", "", between(2, 4096), "Points along `column_direction`."),
@@ -259,23 +274,31 @@ std::vector<Field> cloth_rows() {
                                          "Force per width that it takes; beyond it tears. Any by default."),
       field<kDesc, &ClothDesc::tear_strain>("tear_strain", "", kPositive,
                                             "Strain at which it tears; besides or in place of `strength`."),
-      field<kDesc, &ClothDesc::tethers>(
-          "tethers", "", kAny,
-          "Hold points within their rest distance of the pins; by default if the "
-          "cloth is stiff."),
-      field<kDesc, &ClothDesc::pressure>("pressure", "Pa", between(-1e5, 1e8),
-                                         "Of gas in a closed mesh, above that of the air, at the start."),
-      field<kDesc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                 "Of a triangle across the flow."),
-      field<kDesc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
-                                                 "Of a slanted triangle."),
-      field<kDesc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                             "Viscous drag of the whole cloth, shared out by area."),
-      field<&SceneCloth::pins>("pins", "", kAny, "Points that are held."),
-      field<&SceneCloth::loads>("loads", "", kAny, "Masses added to points."),
-      field<kDesc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
-      field<kDesc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
   };
+}
+
+std::vector<Field> cloth_rows() {
+  constexpr auto kDesc = &SceneCloth::desc;
+  return joined(
+      cloth_form_rows(),
+      {
+          field<kDesc, &ClothDesc::tethers>(
+              "tethers", "", kAny,
+              "Hold points within their rest distance of the pins; by default if the "
+              "cloth is stiff."),
+          field<kDesc, &ClothDesc::pressure>("pressure", "Pa", between(-1e5, 1e8),
+                                             "Of gas in a closed mesh, above that of the air, at the start."),
+          field<kDesc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                     "Of a triangle across the flow."),
+          field<kDesc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
+                                                     "Of a slanted triangle."),
+          field<kDesc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                                 "Viscous drag of the whole cloth, shared out by area."),
+          field<&SceneCloth::pins>("pins", "", kAny, "Points that are held."),
+          field<&SceneCloth::loads>("loads", "", kAny, "Masses added to points."),
+          field<kDesc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+          field<kDesc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      });
 }
 
 std::vector<Field> solid_rows() {
