@@ -150,7 +150,8 @@ struct StepReport {
   /// Groups of stiff solids that used up their passes in some substep: they yield more than they should.
   std::uint32_t solids_unconverged = 0;
   /// Times that a point of a cloth or a solid was held back for a particle substep, because nothing else kept
-  /// surfaces from crossing: they jam there.
+  /// surfaces from crossing: they jam there. Points and bodies count, too, that went on as one because
+  /// nothing else kept the body from passing.
   std::uint32_t points_held_back = 0;
   /// Pairs of parts of surfaces that touched or crossed when they were looked at. Nothing keeps them from
   /// crossing until they are apart.

@@ -237,6 +237,12 @@ void begin_motion(WorldData& world, Real dt) {
     if (world.derived.hooked[body] != 0 && solver::outgrows_rows(bodies, body, h))
       bodies.frozen_inertia[body] = {.on = true, .hooked = true};
   }
+  for (const collision::BodyPassFinder::Pair& pair : world.frame.body_passes.pairs) {
+    if (!state::gives_way(bodies, pair.body) || !state::is_gyroscopic(bodies.mass[pair.body])) continue;
+    state::FrozenInertia& frozen = bodies.frozen_inertia[pair.body];
+    frozen.touches = true;
+    frozen.on = frozen.on || changes_inertia(bodies, pair.body, false, dt);
+  }
   for (const state::Pair& pair : world.tables.pairs.pair) {
     if (pair.manifold_count == 0) continue;
     for (const std::uint32_t collider : {pair.collider_a, pair.collider_b}) {

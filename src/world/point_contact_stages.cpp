@@ -1,14 +1,19 @@
 #include "world/point_contact_stages.h"
 
 #include "base/assert.h"
+#include "collision/deformable/body_passes.h"
 #include "collision/deformable/element_contacts.h"
 #include "collision/deformable/particle_contacts.h"
+#include "collision/deformable/pass_zones.h"
 #include "collision/deformable/rope_contacts.h"
 #include "collision/deformable/rope_passes.h"
 #include "parallel/thread_pool.h"
+#include "solver/contact/stop_passes.h"
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
+#include "solver/soft/pass_masses.h"
 #include "solver/soft/pressed_points.h"
+#include "solver/soft/soft_tuning.h"
 #include "solver/surface/surface_contacts.h"
 #include "solver/surface/surface_tuning.h"
 #include "state/check_contacts.h"
@@ -45,17 +50,29 @@ void release_gaps(state::Tables& t) {
   }
 }
 
+collision::PassSubstep pass_substep(const WorldData& world, Real h) {
+  const WorldDesc& desc = world.tables.desc;
+  return {.h = h,
+          .left = h * static_cast<Real>(desc.substeps * desc.particle_substeps),
+          .first = true,
+          .solved_whole = world.frame.surfaces.stiff};
+}
+
 }  // namespace
 
 void find_point_contacts(WorldData& world, double dt) {
   collision::find_contacts(dt, world.frame.particle_contacts, world.tables);
   remove_contacts_of_gaps(world.tables);
   collision::find_rope_contacts(*world.pool, static_cast<Real>(dt), world.frame.rope_contacts, world.tables);
+  collision::find_body_passes(world.tables, static_cast<Real>(dt), world.frame.body_passes);
+  world.frame.body_manifolds.clear();
+  world.frame.backing_contacts.clear();
   HOOKE_VALIDATE(state::find_in_point_contacts(world.tables));
 }
 
 void update_point_contacts(WorldData& world, Real h) {
   state::Tables& t = world.tables;
+  collision::begin_body_passes(t, world.frame.body_passes);
   for_ranges(*world.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { collision::update_contacts(rows, h, world.frame.particle_contacts, t); });
   for_ranges(*world.pool, static_cast<int>(t.element_contacts.size()), kElementContactGrain,
@@ -87,6 +104,40 @@ void solve_point_contacts(WorldData& world, Real h) {
   }
   for (solver::SoftGroup& group : world.derived.soft.groups)
     solver::settle_pressed_points(h, group.tetrahedra, t);
+}
+
+void share_passing_masses(WorldData& world, Real h, bool first) {
+  state::Tables& t = world.tables;
+  collision::BodyPassFinder& finder = world.frame.body_passes;
+  world.frame.pass_masses.clear();
+  if (finder.pairs.empty()) return;
+  if (first) {
+    collision::sweep_body_passes(*world.pool, t, pass_substep(world, h), finder);
+    collision::forget_body_passes(finder);
+  }
+  solver::share_pass_masses(finder.passes, world.frame.surfaces.stiff, t, world.frame.pass_masses);
+}
+
+void give_back_passing_masses(WorldData& world) {
+  solver::give_back_pass_masses(world.frame.pass_masses, world.tables);
+}
+
+void stop_body_passes(WorldData& world, Real h) {
+  state::Tables& t = world.tables;
+  collision::BodyPassFinder& finder = world.frame.body_passes;
+  collision::PassSubstep substep = pass_substep(world, h);
+  for (int round = 0; round < solver::kPassRounds; ++round) {
+    if (!collision::sweep_body_passes(*world.pool, t, substep, finder)) return;
+    substep.first = false;
+    solver::stop_passes(h, finder.passes, world.frame.backing_contacts, world.frame.body_contacts, t);
+  }
+}
+
+void hold_back_passes(WorldData& world, Real h) {
+  const collision::HeldBack held = collision::hold_back_passes(*world.pool, h, world.frame.body_manifolds,
+                                                               world.frame.body_passes, world.tables);
+  world.frame.passes_held_back += held.moved;
+  world.frame.passes_left += held.left;
 }
 
 }  // namespace hooke::world

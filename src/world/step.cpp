@@ -56,12 +56,15 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
   world::begin_coupled_groups(w, h, first_of_substep);
+  world::share_passing_masses(w, h, first_of_step);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
+  world::give_back_passing_masses(w);
   world::solve_ropes(w, end_time, h, first_of_step);
   world::solve_point_contacts(w, h);
+  world::stop_body_passes(w, h);
   world::move_particles(w, h);
 }
 
@@ -80,6 +83,7 @@ void substep(WorldData& w, int i, double begin_time, Real h) {
     substep_particles(w, begin_time + k * static_cast<double>(particle_h), particle_h, k == 1,
                       i == 0 && k == 1);
     world::move_bodies(w, particle_h);
+    world::hold_back_passes(w, particle_h);
   }
   world::refresh_contacts(w, h);
   world::relax_joints(w, h);
@@ -91,6 +95,8 @@ void finish(WorldData& w, double dt, StepReport& report) {
   report.rows_quarantined = world::quarantine_bodies(w);
   world::finish_body_contacts(w);
   world::clamp_to_impact_times(w);
+  world::hold_back_passes(
+      w, static_cast<Real>(dt) / static_cast<Real>(w.tables.desc.substeps * w.tables.desc.particle_substeps));
   world::finish_bodies(w, static_cast<Real>(dt));
   world::drop_broken_hooks(w);
   world::drop_broken_segments(w);

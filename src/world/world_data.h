@@ -5,6 +5,7 @@
 #include "base/disjoint_sets.h"
 #include "collision/broad_phase/broad_phase.h"
 #include "collision/continuous/continuous.h"
+#include "collision/deformable/body_passes.h"
 #include "collision/deformable/particle_contacts.h"
 #include "collision/deformable/rope_contacts.h"
 #include "collision/narrow_phase/dense_piles.h"
@@ -13,6 +14,7 @@
 #include "solver/air/air.h"
 #include "solver/air/liquids.h"
 #include "solver/body/dipole_forces.h"
+#include "solver/contact/backing_contacts.h"
 #include "solver/contact/body_contacts.h"
 #include "solver/contact/impacts.h"
 #include "solver/coupled/coupled_groups.h"
@@ -23,9 +25,11 @@
 #include "solver/rope/rope_systems.h"
 #include "solver/rope/rope_twist.h"
 #include "solver/soft/gas_pressure.h"
+#include "solver/soft/pass_masses.h"
 #include "solver/soft/soft_groups.h"
 #include "solver/surface/joined_solids.h"
 #include "solver/surface/surface_groups.h"
+#include "state/body_manifolds.h"
 #include "state/sleeping_pairs.h"
 #include "state/tables.h"
 
@@ -147,6 +151,12 @@ struct Frame {
   // These members belong to particles.
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
+  collision::BodyPassFinder body_passes;
+  state::BodyManifolds body_manifolds;        ///< Valid for one step.
+  solver::BackingContacts backing_contacts;   ///< Valid for one particle substep.
+  std::vector<solver::PassMass> pass_masses;  ///< Valid for one particle substep.
+  std::uint32_t passes_held_back = 0;  ///< Points and bodies that hold_back_passes has moved in this step.
+  std::uint32_t passes_left = 0;       ///< Elements that shapes have come through all the same.
   solver::SurfaceContacts surfaces;    ///< Contacts of deformables with each other.
   solver::JoinedSolids joined_solids;  ///< Stiff solids that are solved together.
   solver::Repulsion repulsion;

@@ -92,6 +92,31 @@ inline constexpr int kElementAdvanceRounds = 4;
 /// hand; no measurement is recorded.
 inline constexpr int kDeepestPointRounds = 17;
 
+// What keeps bodies from passing through faces and segments.
+
+/// Distance that faces and segments keep from shapes, over the radius of their points [ratio]. Larger: it
+/// gets in the way of contacts of points, over whose chords shapes protrude. Smaller: rounding decides.
+inline constexpr Real kPassedBodyShare = Real(0.1);
+
+/// How far a chord between points that touch a wide body may cut into it, over the longest edge [ratio]: it
+/// is as much at a right angle. Smaller: points and faces both carry a heavy body, and gain energy.
+inline constexpr Real kChordShare = Real(0.36);
+
+/// How much farther zones may move a body into another in a particle substep before that becomes part of the
+/// zone [m]. Smaller: whatever lies on cloth that lies on something is held. Larger: overlaps grow.
+inline constexpr Real kPressedOverlap = Real(1e-4);
+
+/// Weight of a point from which on what touches an element of a solid that is solved as a whole is left to
+/// the contact of the point [ratio]. Chosen by hand: a second push made 4 % of the energy of 10 t on a jelly.
+inline constexpr Real kPointShare = Real(0.8);
+
+/// Share of that distance that they keep for certain, or the substep is taken back [ratio].
+inline constexpr Real kPassedBodyLeast = Real(0.2);
+
+/// Rounds of advancement of a moving shape to a moving element. Two that have not met by then count as
+/// meeting.
+inline constexpr int kMostMeetingRounds = 40;
+
 // When contacts of two ropes act.
 
 /// Share of the displacement in a substep that other forces may turn into approach [ratio], and gap within

@@ -39,7 +39,13 @@ Vec3 velocity_of(const ElementContact& contact, const state::Tables& t) {
   return v;
 }
 
-void solve_row(Real h, ElementContact& contact, state::Tables& t) {
+/// Least speed along the normal at which a row is satisfied [m/s].
+Real least_speed(const ElementContact& contact, Real h) {
+  return -std::max(contact.separation, Real(0)) / h;
+}
+
+/// Returns the change of speed along the normal that was needed [m/s].
+Real solve_row(Real h, Real least, ElementContact& contact, state::Tables& t) {
   const Real w = inverse_mass_of(contact, t.particles);
   const auto resists = [&](Vec3 along) {
     return gives_way(t.bodies, contact.body)
@@ -49,9 +55,9 @@ void solve_row(Real h, ElementContact& contact, state::Tables& t) {
   const Vec3 n = contact.normal;
   const Vec3 relative = velocity_of(contact, t);
   const Real speed = dot(n, relative);
-  const Real change = -(speed + std::max(contact.separation, Real(0)) / h);
+  const Real change = least - speed;
   const Real w_normal = resists(n);
-  if (!(change > Real(0)) || !(w_normal > Real(0))) return;
+  if (!(change > Real(0)) || !(w_normal > Real(0))) return Real(0);
 
   const Real pushed = change / w_normal;
   const Vec3 sliding = relative - speed * n;
@@ -63,6 +69,7 @@ void solve_row(Real h, ElementContact& contact, state::Tables& t) {
   }
   push(contact, impulse, t);
   contact.normal_force += pushed / h;
+  return change;
 }
 
 }  // namespace
@@ -89,6 +96,10 @@ void push_out(const ElementContact& contact, Real h, state::Tables& t) {
   }
 }
 
+Real stop_pass(Real h, ElementContact& pass, state::Tables& t) {
+  return solve_row(h, least_speed(pass, h), pass, t);
+}
+
 void solve_element_contacts(Real h, state::Tables& t) {
   for (int sweep = 0; sweep < kElementContactSweeps; ++sweep) {
     for (ElementContact& contact : t.element_contacts) {
@@ -98,7 +109,7 @@ void solve_element_contacts(Real h, state::Tables& t) {
         contact.friction_force = {};
         push_out(contact, h, t);
       }
-      solve_row(h, contact, t);
+      solve_row(h, least_speed(contact, h), contact, t);
     }
   }
 }

@@ -2,6 +2,8 @@
 
 #include "state/tables.h"
 
+#include <span>
+
 namespace hooke::solver {
 
 /// Whether an element contact is solved together with the body that its object touches, in a coupled group
@@ -17,6 +19,10 @@ namespace hooke::solver {
 /// and the inverse mass sum w_i^2 / m_i, to which that of the body is added if it gives way. An overlap is
 /// undone in the position of the points only, in the same shares.
 void solve_element_contacts(Real h, state::Tables& tables);
+
+/// Solves a row of collision/deformable/body_passes.h, with friction. What has come nearer than its distance
+/// is not pushed back. Returns the change of speed along the normal that was needed [m/s].
+Real stop_pass(Real h, state::ElementContact& pass, state::Tables& tables);
 
 /// Moves the points of a contact out of the body that they overlap.
 void push_out(const state::ElementContact& contact, Real h, state::Tables& tables);

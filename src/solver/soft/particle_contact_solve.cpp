@@ -99,6 +99,14 @@ void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, stat
                 particles);
 }
 
+void stop_at_ground(std::uint32_t particle, Real h, state::Tables& t) {
+  const std::vector<std::uint32_t>& of = t.contacts.particle;
+  const auto [first, end] = std::equal_range(of.begin(), of.end(), particle);
+  if (first == end || !(t.particles.velocity[particle].inverse_mass > Real(0))) return;
+  stop_at_ground(static_cast<std::size_t>(first - of.begin()), static_cast<std::size_t>(end - of.begin()), h,
+                 t.bodies, t.contacts, t.particles.velocity[particle]);
+}
+
 void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Contacts& contacts,
               state::Particles& particles) {
   const Real overlap = -contacts.separation[row];

@@ -35,6 +35,10 @@ void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Ran
 void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, state::Contacts& contacts,
               state::Particles& particles);
 
+/// Takes the speed with which a particle would pass what does not give way, after something else has pushed
+/// it.
+void stop_at_ground(std::uint32_t particle, Real h, state::Tables& tables);
+
 /// Moves the particle of a row out of the body that it overlaps.
 void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Contacts& contacts,
               state::Particles& particles);

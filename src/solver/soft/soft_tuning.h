@@ -67,6 +67,13 @@ inline constexpr double kMostPlasticSquare = 25;
 /// ropes it bounds the push of a contact. Chosen by hand; no measurement is recorded.
 inline constexpr double kParticlePushOutSpeed = 1;
 
+/// Looks at which bodies would pass through elements, at most, in a particle substep; sweeps over those that
+/// would, at most, between two looks; and the largest change of speed in a sweep, over that of the first, at
+/// which sweeps end [ratio]. Fewer: what is not stopped is held back as a whole.
+inline constexpr int kPassRounds = 8;
+inline constexpr int kMostPassSweeps = 24;
+inline constexpr Real kPassAccuracy = Real(0.01);
+
 /// Sweeps over contacts of cloth elements. Chosen by hand; no measurement is recorded.
 inline constexpr int kElementContactSweeps = 2;
 

@@ -2,9 +2,9 @@
 
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
-#include "geometry/solid/tetrahedral_mesh.h"
 #include "geometry/triangle_mesh.h"
 #include "solver/surface/surface_tree.h"
+#include "state/surface_triangles.h"
 
 #include <algorithm>
 
@@ -15,34 +15,6 @@ namespace {
 using geometry::kNone;
 using geometry::MeshTopology;
 using geometry::Triangle;
-
-/// The triangles of an object's surface, as rows of particles.
-std::vector<Triangle> triangles_of(const state::Tables& t, const state::Deformable& object) {
-  std::vector<Triangle> found;
-  for (std::uint32_t i = object.triangles.first; i < object.triangles.end(); ++i) {
-    const auto [a, b, c] = t.triangles.corners[i];
-    found.push_back({a, b, c});
-  }
-  if (object.kind != PointRef::Kind::kSolid) return found;
-  if (object.tetrahedra.count > 0) {
-    std::vector<geometry::Tetrahedron> tetrahedra;
-    for (std::uint32_t i = object.tetrahedra.first; i < object.tetrahedra.end(); ++i) {
-      const auto [a, b, c, d] = t.tetrahedra.corners[i];
-      tetrahedra.push_back({a, b, c, d});
-    }
-    return geometry::surface_of(tetrahedra);
-  }
-  if (!object.skin) return found;
-  for (const Triangle& triangle : object.skin->triangles) {
-    Triangle rows = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t point = object.skin->vertices[triangle[k]].points[0];
-      rows[k] = object.particles.first + t.particles.row_of[object.particles.first + point];
-    }
-    found.push_back(rows);
-  }
-  return found;
-}
 
 /// Pairs triangles that share an edge.
 class Pairing {
@@ -239,7 +211,7 @@ class MeshBuilder {
 /// Appends the surface of an object; `vertex_of` is scratch memory by particle, full of kNone.
 void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::uint32_t>& vertex_of,
                     SurfaceMeshes& surfaces) {
-  std::vector<Triangle> triangles = triangles_of(t, t.objects[row]);
+  std::vector<Triangle> triangles = state::surface_triangles(t, t.objects[row]);
   if (triangles.empty() || !t.objects[row].surface.rest_points) return;
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();
   mesh.object = row;
