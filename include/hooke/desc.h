@@ -383,10 +383,18 @@ struct RopeDesc {
   Real drag_coefficient = Real(1.1);  ///< Coefficient of drag of a cylinder across the flow. [0, 1e6]
   Real charge = Real(0);              ///< Electric charge of the rope [C], shared out by mass. [-1e9, 1e9]
   Vec3 velocity = {};                 ///< Velocity of all points at the start [m/s].
-  /// Whether it touches itself and other ropes that say so too, all along, as a tube of `radius` with the
-  /// friction of `contact`. Segments that are less than pi x radius apart along the rope, half a turn of the
-  /// tightest bend, do not touch each other. Without it ropes pass through each other, at no cost.
+  /// Whether it touches itself and other ropes that say so too, in a way that knots hold: contact, friction
+  /// and stretch are solved together, all along, as a tube of `radius` with the friction of `contact`.
+  /// Segments that are less than pi x radius apart along the rope, half a turn of the tightest bend, do not
+  /// touch each other.
   bool touches_ropes = false;
+  /// Whether it touches cloths, solids and other ropes that say so too, with friction, all along. It costs
+  /// less than `touches_ropes`, and two ropes that have both use that. It suits what lies or falls: a rope
+  /// that is taut or carries a load is stretched by some per cent where something presses on it, since
+  /// contacts come after the rope has been solved. A rope does not touch what three hooks or more sew it to,
+  /// nor what slides along it on a hook. Ropes that both have a `repulsion_strength` do not touch each other.
+  bool touches_surfaces = false;
+  FilterDesc filter = {};  ///< Which of these it touches.
   /// Repulsion s [N m^2], not negative; 0 for none. Points of ropes that are nearer than r =
   /// `repulsion_range` push each other away with the force s (1 / d^2 - 1 / r^2), d their distance; of two
   /// ropes the geometric mean of s counts and the mean of r. Points less than pi r / 2 apart along one rope

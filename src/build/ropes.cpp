@@ -152,6 +152,13 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
   object.friction = desc.contact.friction;
   object.strength = desc.strength.value_or(kRigid);
   object.touches_ropes = desc.touches_ropes;
+  object.touches_surfaces = desc.touches_surfaces;
+  object.surface = {.rest_points = {},
+                    .self_contact = false,
+                    .filter = desc.filter,
+                    .radius = desc.radius,
+                    .self_distance = Real(0),
+                    .edge = static_cast<Real>(total / static_cast<double>(lengths.size()))};
   object.repulsion_strength = desc.repulsion_strength;
   object.repulsion_range = desc.repulsion_range;
   object.bend_stiffness = desc.bend_stiffness;

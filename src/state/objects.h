@@ -65,7 +65,7 @@ struct RestShape {
 /// How a deformable touches others and itself (solver/surface). The three lengths follow from the description
 /// and the form at rest.
 struct Surface {
-  /// Positions at rest by row [m]: which parts are near each other. Set where there is a surface.
+  /// Positions at rest by row [m]: which parts are near each other. Set where there are triangles.
   std::shared_ptr<const std::vector<Vec3>> rest_points = {};
   bool self_contact = false;     ///< It touches itself.
   FilterDesc filter = {};        ///< Which other deformables it touches.
@@ -107,6 +107,7 @@ struct Deformable {
   Real yield_angle = kRigid;                         ///< Yield angle of a cloth's bends [rad].
   Real yield_stress = kRigid;                        ///< Yield stress of a solid [Pa].
   std::shared_ptr<const RestEdges> rest_edges = {};  ///< Set for a solid that yields; by its tetrahedra.
+  bool touches_surfaces = false;      ///< The rope touches cloths, solids and ropes that have this flag.
   bool touches_ropes = false;         ///< The rope touches itself and all ropes that have this flag.
   Real repulsion_strength = Real(0);  ///< Repulsion of a rope [N m^2]; 0: none.
   Real repulsion_range = Real(0);     ///< Range of the repulsion [m].

@@ -11,6 +11,7 @@
 #include "solver/solid/stiff_solution.h"
 #include "solver/solid/tetrahedron_solve.h"
 #include "solver/surface/joined_solids.h"
+#include "solver/surface/rope_loads.h"
 #include "solver/surface/surface_contacts.h"
 #include "state/check_tables.h"
 #include "state/rope_chains.h"
@@ -431,9 +432,11 @@ void solve_ropes(WorldData& world, double end_time, Real h, bool first) {
   solver::twist_nodes(world.frame.twist_rows, tables);
   world.frame.rope_system_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
   HOOKE_ASSERT(world.frame.velocity_before.size() == tables.particles.velocity.size());
+  solver::list_rope_loads(tables, h, world.frame.surfaces);
   for_ranges(*world.pool, static_cast<int>(world.derived.rope_systems.size()), 1, [&](Range rows, int part) {
     solver::solve_rope_systems(std::span(world.derived.rope_systems).subspan(rows.begin, rows.count()),
-                               world.derived.coupled_groups.anchors, world.frame.velocity_before, h,
+                               world.derived.coupled_groups.anchors,
+                               {h, world.frame.velocity_before, world.frame.surfaces},
                                world.frame.rope_system_scratch[part], tables);
   });
   for_ranges(*world.pool, static_cast<int>(world.derived.coupled_groups.count), 1, [&](Range rows) {

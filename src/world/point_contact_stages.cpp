@@ -79,7 +79,7 @@ void update_point_contacts(WorldData& world, Real h) {
              [&](Range rows) { collision::update_element_contacts(rows, h, t); });
   collision::update_rope_contacts(*world.pool, h, world.frame.rope_contacts, t);
   release_gaps(t);
-  solver::find_contacts_of_stiff_solids(*world.pool, h, world.frame.surfaces, t);
+  solver::find_contacts_before_solutions(*world.pool, h, world.frame.surfaces, t);
 }
 
 void solve_point_contacts(WorldData& world, Real h) {

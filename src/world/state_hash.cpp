@@ -74,10 +74,11 @@ void add_rest_form(StateHash& hash, const state::Deformable& object) {
 void add_surface(StateHash& hash, const state::Deformable& object) {
   const FilterDesc& filter = object.surface.filter;
   const FilterDesc usual = {};
-  if (!object.surface.self_contact && filter.category == usual.category && filter.mask == usual.mask &&
+  const bool touches = object.surface.self_contact || object.touches_surfaces;
+  if (!touches && filter.category == usual.category && filter.mask == usual.mask &&
       filter.group == usual.group)
     return;
-  add(hash, object.surface.self_contact, filter.category, filter.mask, filter.group);
+  add(hash, touches, filter.category, filter.mask, filter.group);
 }
 
 /// Adds whether segments hold, of ropes that can snap.

@@ -137,6 +137,93 @@ void count_pair(const Surfaces& s, std::array<std::uint32_t, 2> edge, std::array
   ++(side_p == 0 || side_q == 0 ? found.touching : found.crossing);
 }
 
+/// All lines and all edges of triangles, each once.
+std::vector<std::array<std::uint32_t, 2>> edges_of(const Surfaces& surfaces) {
+  std::vector<std::array<std::uint32_t, 2>> edges = surfaces.lines;
+  for (const auto& [a, b, c] : surfaces.triangles) {
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      edges.push_back({std::min(p, q), std::max(p, q)});
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+/// The ends of two lines.
+using Ends = std::array<DVec3, 4>;
+
+double volume_of(const Ends& x) {
+  return dot(x[1] - x[0], cross(x[3] - x[2], x[2] - x[0]));
+}
+
+/// Distance of two lines: the least of those of an end and a line, and of the lines across both.
+double distance_of(const Ends& x) {
+  const auto to_line = [](DVec3 p, DVec3 a, DVec3 b) {
+    const DVec3 u = b - a;
+    const double share = std::clamp(dot(p - a, u) / std::max(dot(u, u), 1e-300), 0.0, 1.0);
+    return length(p - a - share * u);
+  };
+  double least = std::min({to_line(x[0], x[2], x[3]), to_line(x[1], x[2], x[3]), to_line(x[2], x[0], x[1]),
+                           to_line(x[3], x[0], x[1])});
+  const DVec3 u = x[1] - x[0];
+  const DVec3 v = x[3] - x[2];
+  const DVec3 n = cross(u, v);
+  const double nn = dot(n, n);
+  if (!(nn > 0)) return least;
+  const double s = dot(cross(x[2] - x[0], v), n) / nn;
+  const double t = dot(cross(x[2] - x[0], u), n) / nn;
+  if (s >= 0 && s <= 1 && t >= 0 && t <= 1)
+    least = std::min(least, std::abs(dot(x[2] - x[0], n)) / std::sqrt(nn));
+  return least;
+}
+
+/// Whether two lines meet while their ends go straight from `from` to `to`. The volume of their ends is a
+/// cubic in time, which is divided until its Bernstein coefficients have one sign or the time is known.
+bool pass(const Ends& from, const Ends& to) {
+  struct Piece {
+    double begin, end;
+    std::array<double, 4> coefficient;
+  };
+  const auto at = [&](double time) {
+    Ends x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = (1 - time) * from[k] + time * to[k];
+    return x;
+  };
+  double farthest = 0;
+  for (std::size_t k = 0; k < 4; ++k) farthest = std::max(farthest, length(to[k] - from[k]));
+  const double f0 = volume_of(at(0));
+  const double f1 = volume_of(at(1.0 / 3));
+  const double f2 = volume_of(at(2.0 / 3));
+  const double f3 = volume_of(at(1));
+  std::vector<Piece> open = {
+      {0, 1, {f0, (-5 * f0 + 18 * f1 - 9 * f2 + 2 * f3) / 6, (2 * f0 - 9 * f1 + 18 * f2 - 5 * f3) / 6, f3}}};
+  while (!open.empty()) {
+    const Piece piece = open.back();
+    open.pop_back();
+    const auto [least, most] = std::minmax_element(piece.coefficient.begin(), piece.coefficient.end());
+    if (*least > 0 || *most < 0) continue;
+    const double middle = 0.5 * (piece.begin + piece.end);
+    const double distance = distance_of(at(middle));
+    // Lines that stay in one plane have the volume 0 all the time; how far they go tells whether they may
+    // meet.
+    if (distance > (piece.end - piece.begin) * farthest + 1e-8) continue;
+    if (piece.end - piece.begin < 1e-9) {
+      if (distance < 1e-8) return true;
+      continue;
+    }
+    const auto& [a, b, c, d] = piece.coefficient;
+    const double ab = 0.5 * (a + b);
+    const double bc = 0.5 * (b + c);
+    const double cd = 0.5 * (c + d);
+    const double abc = 0.5 * (ab + bc);
+    const double bcd = 0.5 * (bc + cd);
+    const double half = 0.5 * (abc + bcd);
+    open.push_back({piece.begin, middle, {a, ab, abc, half}});
+    open.push_back({middle, piece.end, {half, bcd, cd, d}});
+  }
+  return false;
+}
+
 }  // namespace
 
 int exact_orientation(DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
@@ -150,13 +237,7 @@ int exact_orientation(DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
 }
 
 Crossings count_crossings(const Surfaces& surfaces) {
-  std::vector<std::array<std::uint32_t, 2>> edges = surfaces.lines;
-  for (const auto& [a, b, c] : surfaces.triangles) {
-    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
-      edges.push_back({std::min(p, q), std::max(p, q)});
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const std::vector<std::array<std::uint32_t, 2>> edges = edges_of(surfaces);
   double mean = 0;
   for (const auto& [p, q] : edges) mean += length(surfaces.points[p] - surfaces.points[q]);
   Crossings found;
@@ -181,6 +262,32 @@ Crossings count_crossings(const Surfaces& surfaces) {
     for (const std::uint32_t triangle : near) count_pair(surfaces, edge, surfaces.triangles[triangle], found);
   }
   return found;
+}
+
+std::size_t count_passes(const Surfaces& before, const Surfaces& after) {
+  const std::vector<std::array<std::uint32_t, 2>> edges = edges_of(before);
+  std::vector<Bounds> bounds;
+  for (const auto& [p, q] : edges)
+    bounds.push_back(bounds_of({before.points[p], before.points[q], after.points[p], after.points[q]}));
+  const auto is_line = [&](const std::array<std::uint32_t, 2>& edge) {
+    return std::find(before.lines.begin(), before.lines.end(), edge) != before.lines.end();
+  };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (!is_line(edges[i])) continue;
+    const auto [a, b] = edges[i];
+    for (std::size_t j = 0; j < edges.size(); ++j) {
+      const auto [c, d] = edges[j];
+      if (are_apart(bounds[i], bounds[j]) || a == c || a == d || b == c || b == d) continue;
+      if (!before.owners.empty() && before.owners[a] == before.owners[c]) continue;
+      if (j < i && is_line(edges[j])) continue;  // It was looked at as the first one.
+      const auto ends = [&](const Surfaces& s) {
+        return Ends{s.points[a], s.points[b], s.points[c], s.points[d]};
+      };
+      if (pass(ends(before), ends(after))) ++count;
+    }
+  }
+  return count;
 }
 
 }  // namespace hooke

@@ -8,8 +8,9 @@
 #include <vector>
 
 /// \file
-/// An independent check of whether surfaces cross: every edge against every triangle, with exact signs. It
-/// shares no code with the engine, so that both cannot have the same fault.
+/// An independent check of whether surfaces cross: every edge against every triangle, with exact signs, and
+/// of whether lines passed each other. It shares no code with the engine, so that both cannot have the same
+/// fault.
 
 namespace hooke {
 
@@ -18,6 +19,7 @@ struct Surfaces {
   std::vector<DVec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<std::uint32_t, 2>> lines;  ///< Edges that belong to no triangle, as those of ropes.
+  std::vector<std::uint32_t> owners;  ///< By point: its object, for count_passes; empty: all are different.
 };
 
 struct Crossings {
@@ -32,5 +34,10 @@ struct Crossings {
 
 /// Counts the crossing pairs of all edges and all triangles.
 [[nodiscard]] Crossings count_crossings(const Surfaces& surfaces);
+
+/// Counts the pairs of a line and a line, or of a line and an edge of a triangle, without a common point,
+/// that meet while all points go from where they are in `before` to where they are in `after`, straight and
+/// evenly. Lines that come within 1e-8 m of each other count, too; those of one object do not.
+[[nodiscard]] std::size_t count_passes(const Surfaces& before, const Surfaces& after);
 
 }  // namespace hooke

@@ -73,6 +73,29 @@ TEST_SUITE("world/crossings") {
     CHECK(through >= 38);
     CHECK(through <= 200);
   }
+
+  TEST_CASE(
+      "intersect: a line that passes another one is found, and one that turns back or goes round is not") {
+    const auto lines = [](DVec3 from, DVec3 to) {
+      Surfaces s;
+      s.points = {{-1, 0, 0}, {1, 0, 0}, from, to};
+      s.lines = {{0, 1}, {2, 3}};
+      return s;
+    };
+    const Surfaces above = lines({0.3, 1e-6, -1}, {0.1, 1e-6, 1});
+    CHECK(count_passes(above, lines({0.3, -1e-6, -1}, {0.1, -1e-6, 1})) == 1);
+    CHECK(count_passes(above, lines({0.3, 1e-7, -1}, {0.1, 1e-7, 1})) == 0);
+    CHECK(count_passes(above, lines({2.3, -1, -1}, {2.1, -1, 1})) == 1);  // It meets at once, then leaves.
+    CHECK(count_passes(lines({1.1, 1, -1}, {1.1, 1, 1}), lines({1.1, -1, -1}, {1.1, -1, 1})) == 0);
+    // Both ends of the way lie on the same side: one end goes under, and the other comes after it.
+    Surfaces triangle = lines({0.5, 0.1, -1}, {0.5, 0.1, 1});
+    triangle.points.push_back({0, 0, -0.5});
+    triangle.triangles = {{0, 1, 4}};
+    triangle.lines = {{2, 3}};
+    Surfaces below = triangle;
+    below.points[2].y = below.points[3].y = -0.1;
+    CHECK(count_passes(triangle, below) == 2);  // It passes two edges of the triangle.
+  }
 }
 
 }  // namespace hooke

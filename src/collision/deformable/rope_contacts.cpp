@@ -152,7 +152,10 @@ void find(parallel::ThreadPool& pool, Real dt, RopeContactFinder& finder, Tables
     const DVec3 origin = t.objects[finder.ropes.front()].origin;
     for (const std::uint32_t o : finder.ropes) set_boxes(t, o, origin, dt, finder);
     finder.broad_phase.find_pairs(pool, finder.pairs);
-    for (const ColliderPair pair : finder.pairs) add_row(t, pair, finder);
+    for (const ColliderPair pair : finder.pairs) {
+      const bool any_gone = !t.segments.joins(pair.first) || !t.segments.joins(pair.second);
+      if (!any_gone) add_row(t, pair, finder);
+    }
     find_neighbors(finder.contacts);
   }
   carry(t.rope_contacts, finder.contacts);

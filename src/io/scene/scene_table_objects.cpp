@@ -217,6 +217,15 @@ std::vector<Field> rope_rows() {
           field<kDesc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
           field<kDesc, &RopeDesc::touches_ropes>(
               "touches_ropes", "", kAny, "It touches other ropes that say so too, and itself: knots hold."),
+          field<kDesc, &RopeDesc::touches_surfaces>(
+              "touches_surfaces", "", kAny, "It touches cloths, solids and other ropes that say so too."),
+          field<kDesc, &RopeDesc::filter, &FilterDesc::category>(
+              "category", "", kAny, "Bits of its categories, for contact with other deformables."),
+          field<kDesc, &RopeDesc::filter, &FilterDesc::mask>(
+              "mask", "", kAny, "Bits of the categories of other deformables that it touches."),
+          field<kDesc, &RopeDesc::filter, &FilterDesc::group>(
+              "group", "", kAny,
+              "Deformables of one negative group never touch, of one positive group always."),
           field<kDesc, &RopeDesc::repulsion_strength>(
               "repulsion_strength", "N m^2", kNotNegative,
               "s: points of ropes with one push each other away with s (1 "

@@ -7,6 +7,7 @@
 #include "solver/soft/particle_contact_solve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hooke::solver {
@@ -229,6 +230,48 @@ void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, 
     const std::uint32_t node = first_node + particle - rope_system.first_particle;
     HOOKE_ASSERT(particle >= rope_system.first_particle && node - first_node < rope_system.node_count);
     contact_rows.push_back(load_contact_row(row, node, h, tables));
+  }
+}
+
+void load_loads(const RopeSystem& rope_system, double h, const SurfaceContacts& surfaces,
+                const state::Tables& tables, std::vector<RopeContactRow>& contact_rows) {
+  const std::size_t own = contact_rows.size();
+  auto at = std::lower_bound(surfaces.load_order.begin(), surfaces.load_order.end(),
+                             std::array<std::uint32_t, 2>{rope_system.first_particle, 0});
+  for (; at != surfaces.load_order.end() && (*at)[0] < rope_system.first_particle + rope_system.node_count;
+       ++at) {
+    const auto [particle, number] = *at;
+    const RopeLoad& load = surfaces.loads[number];
+    const state::VelocityRecord& velocity = tables.particles.velocity[particle];
+    if (!(velocity.inverse_mass > Real(0))) continue;
+    const double most = kRopeContactStiffness * static_cast<double>(tables.particles.mass[particle]);
+    const auto w = static_cast<double>(load.inverse_mass);
+    RopeContactRow t;
+    t.row = RopeContactRow::kTether;
+    t.load = number;
+    t.node = particle - rope_system.first_particle;
+    t.rho = w * most > static_cast<double>(load.share) ? static_cast<double>(load.share) / w : most;
+    t.n = vector_cast<double>(load.normal);
+    t.surface = vector_cast<double>(load.surface);
+    t.separation = static_cast<double>(load.separation);
+    t.of_point = true;
+    t.active = opening_speed_of(t, vector_cast<double>(velocity.v), h) < 0;
+    contact_rows.push_back(t);
+  }
+  if (contact_rows.size() == own) return;
+  std::stable_sort(contact_rows.begin(), contact_rows.end(),
+                   [](const RopeContactRow& a, const RopeContactRow& b) { return a.node < b.node; });
+}
+
+bool update_load(double h, V u, RopeContactRow& t) {
+  return update_point_contact_row(h, false, u, t);
+}
+
+void store_loads(std::span<const RopeContactRow> contact_rows, SurfaceContacts& surfaces) {
+  for (const RopeContactRow& t : contact_rows) {
+    if (!t.is_load()) continue;
+    surfaces.loads[t.load].impulse = static_cast<Real>(t.normal);
+    surfaces.loads[t.load].solved = true;
   }
 }
 

@@ -62,6 +62,7 @@ struct RopeBend {
 /// plane across the line to the pin, without friction.
 struct RopeContactRow {
   static constexpr std::uint32_t kTether = 0xFFFFFFFF;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   std::uint32_t row = 0, node = 0;
   double rho = 0, rho_across = 0;  ///< Stiffness along the normal and of friction [kg].
@@ -74,11 +75,14 @@ struct RopeContactRow {
   DVec3 belt;        ///< Velocity of the surface relative to that body [m/s].
   double separation = 0, friction = 0, n0 = 0, normal = 0;
   bool active = false, slides = false;
-  bool let_go = false;    ///< No contact for the rest of the substep: it pulled too often.
-  bool dragged = false;   ///< Friction acts as drag for the rest of the substep: it drove.
-  bool of_point = false;  ///< Whether the particle belongs to no rope.
-  double w = 0;           ///< Of a point: its inverse mass [1/kg].
+  bool let_go = false;         ///< No contact for the rest of the substep: it pulled too often.
+  bool dragged = false;        ///< Friction acts as drag for the rest of the substep: it drove.
+  bool of_point = false;       ///< Whether the particle belongs to no rope.
+  std::uint32_t load = kNone;  ///< Row of SurfaceContacts::loads, if it is one: `row` is kTether then.
+  double w = 0;                ///< Of a point: its inverse mass [1/kg].
   double drag = 0;  ///< Friction over speed of a point or dragged contact: rho, or mu N over speed [kg].
+
+  [[nodiscard]] bool is_load() const { return load != kNone; }
 };
 
 /// How a rope's segments are linearized.
@@ -114,6 +118,16 @@ void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityR
 /// Appends the contacts of a rope whose nodes begin at `first_node`, except those of held nodes.
 void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
                        const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
+
+/// Adds what presses on a rope through surfaces (SurfaceContacts::loads), in the order of nodes.
+void load_loads(const RopeSystem& rope_system, double h, const SurfaceContacts& surfaces,
+                const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
+
+/// Updates a row of load_loads. Returns whether it switched on or off.
+bool update_load(double h, DVec3 u, RopeContactRow& t);
+
+/// Writes the impulses of such rows.
+void store_loads(std::span<const RopeContactRow> contact_rows, SurfaceContacts& surfaces);
 
 /// One particle outside of ropes, and what it may be held by.
 struct PointInContact {

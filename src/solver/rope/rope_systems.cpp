@@ -26,6 +26,7 @@ struct Source {
   std::span<const RopeAnchor> anchors;
   const std::vector<state::VelocityRecord>& before;
   double h;
+  SurfaceContacts& surfaces;
   state::Tables& tables;
 };
 
@@ -192,6 +193,7 @@ class Group {
     HOOKE_ASSERT(rope_system.first_anchor <= rope_system.end_anchor &&
                  rope_system.end_anchor <= source.anchors.size());
     load_contact_rows(rope_system, 0, source.h, source.tables, contact_rows_[lane]);
+    load_loads(rope_system, source.h, source.surfaces, source.tables, contact_rows_[lane]);
     for (std::uint32_t i = rope_system.first_anchor; i < rope_system.end_anchor; ++i)
       load_anchor(source.anchors[i], members.traits().rows[source.anchors[i].node].w[lane], lane, source);
   }
@@ -288,8 +290,14 @@ class Group {
   bool converge(const wide::RopeTraits<kCount>& traits, int lane, int solves, double h) {
     if (!is_finite(lane)) return true;
     Unconverged unconverged;
-    for (RopeContactRow& t : contact_rows_[lane])
-      unconverged.add(update_contact_row(h, lets_go(solves), node_at(traits, t.node, lane), t));
+    for (RopeContactRow& t : contact_rows_[lane]) {
+      const RopeNode node = node_at(traits, t.node, lane);
+      if (t.is_load()) {
+        unconverged.ropes = update_load(h, node.u, t) || unconverged.ropes;
+      } else {
+        unconverged.add(update_contact_row(h, lets_go(solves), node, t));
+      }
+    }
     const bool long_enough = ropes_.error[lane] <= kRopeLengthTolerance && !(ropes_.limits_changed[lane] > 0);
     if (long_enough && solves >= least_solves(contact_rows_[lane], unconverged)) return true;
     if (!long_enough) ropes_.first[lane] = 0;
@@ -309,6 +317,7 @@ class Group {
       if (!chosen[lane]) continue;
       if (members.traits().limits) store_limited(members.rope_system(lane), lane, source.tables.segments);
       store_contact_rows(source.h, contact_rows_[lane], source.tables.contacts);
+      store_loads(contact_rows_[lane], source.surfaces);
       for (const AnchorRows& anchor : anchors_[lane]) store_anchor(anchor, lane, source);
     }
   }
@@ -368,11 +377,10 @@ RopeSystemScratch::RopeSystemScratch(RopeSystemScratch&&) noexcept = default;
 RopeSystemScratch& RopeSystemScratch::operator=(RopeSystemScratch&&) noexcept = default;
 
 void solve_rope_systems(std::span<RopeSystem> rope_systems, std::span<const RopeAnchor> anchors,
-                        const std::vector<state::VelocityRecord>& before, Real h, RopeSystemScratch& scratch,
-                        state::Tables& tables) {
+                        const RopeSubstep& substep, RopeSystemScratch& scratch, state::Tables& tables) {
   RopeSystemScratch::Groups& groups = scratch.groups();
   std::vector<RopeSystem*>& next = groups.next;
-  const Source source = {anchors, before, static_cast<double>(h), tables};
+  const Source source = {anchors, substep.before, static_cast<double>(substep.h), substep.surfaces, tables};
   groups.together.used = groups.alone.used = 0;
   next.clear();  // a solution that ran out of memory has left ropes here
   const auto finish = [&] {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/surface/surface_groups.h"
 #include "state/tables.h"
 
 #include <cstdint>
@@ -35,6 +36,13 @@ struct RopeSystem {
   bool in_coupled_group = false;  ///< Whether a coupled group solves it; written by build_coupled_groups
                                   ///< (solver/coupled/coupled_groups.h).
   bool unconverged = false;       ///< A length error above 1 % was left in this frame, by solve_rope_systems.
+};
+
+/// A particle substep as ropes see it.
+struct RopeSubstep {
+  Real h = Real(0);                                  ///< Its length [s].
+  const std::vector<state::VelocityRecord>& before;  ///< By particle: velocities from before the forces.
+  SurfaceContacts& surfaces;                         ///< Holds what presses on ropes.
 };
 
 /// Memory of solve_rope_systems. It keeps the constants of ropes until the revision of the tables changes.
@@ -89,10 +97,11 @@ class RopeSystemScratch {
 ///
 /// Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable
 /// constrained dynamics". A segment of no length is taken to point down. Sweeps are in double: the
-/// directions of a rope's segments differ in compliance by a factor of 1e10. `before` holds velocities from
-/// before the forces.
+/// directions of a rope's segments differ in compliance by a factor of 1e10.
+///
+/// What presses on a rope (SurfaceContacts::loads) acts as a contact whose rho is its mass, but at most 1000
+/// m: it moves on with the rope like a mass that is thrown on it.
 void solve_rope_systems(std::span<RopeSystem> rope_systems, std::span<const RopeAnchor> anchors,
-                        const std::vector<state::VelocityRecord>& before, Real h, RopeSystemScratch& scratch,
-                        state::Tables& tables);
+                        const RopeSubstep& substep, RopeSystemScratch& scratch, state::Tables& tables);
 
 }  // namespace hooke::solver

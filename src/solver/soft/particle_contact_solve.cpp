@@ -27,10 +27,10 @@ void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::Veloci
   contacts.friction_force[row] -= Real(1) / (h * particle.inverse_mass) * stopped;
 }
 
-/// Calls solve(first, end) with the rows of each free particle that belongs to the range and to no rope.
+/// Calls solve(first, end) with the rows of each free particle that belongs to the range.
 template <class Solve>
-void for_particles(const std::vector<state::Deformable>& objects, parallel::Range range,
-                   const state::Contacts& contacts, const state::Particles& particles, Solve&& solve) {
+void for_particles(parallel::Range range, const state::Contacts& contacts, const state::Particles& particles,
+                   Solve&& solve) {
   const auto& particle = contacts.particle;
   HOOKE_ASSERT(static_cast<std::size_t>(range.end) <= particle.size());
   auto row = static_cast<std::size_t>(range.begin);
@@ -38,7 +38,6 @@ void for_particles(const std::vector<state::Deformable>& objects, parallel::Rang
   while (row < static_cast<std::size_t>(range.end)) {
     const std::size_t first = row;
     while (row < particle.size() && particle[row] == particle[first]) ++row;
-    if (objects[contacts.object[first]].kind == PointRef::Kind::kRope) continue;
     if (particles.velocity[particle[first]].inverse_mass > Real(0)) solve(first, row);
   }
 }
@@ -120,7 +119,8 @@ void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Conta
 
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
                     const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles) {
-  for_particles(objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
+  for_particles(range, contacts, particles, [&](std::size_t first, std::size_t end) {
+    if (objects[contacts.object[first]].kind == PointRef::Kind::kRope) return;
     if (contacts.coupled[first] != 0) {
       stop_at_ground(first, end, h, bodies, contacts, particles.velocity[contacts.particle[first]]);
     } else {
@@ -132,10 +132,12 @@ void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Ran
 void solve_contacts_again(const state::Tables& tables, std::span<const std::uint8_t> marked,
                           parallel::Range range, Real h, state::Contacts& contacts,
                           state::Particles& particles) {
-  for_particles(tables.objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
-    if (marked[contacts.object[first]] == 0) return;
+  for_particles(range, contacts, particles, [&](std::size_t first, std::size_t end) {
+    const std::uint32_t object = contacts.object[first];
+    if (marked[object] == 0) return;
     state::VelocityRecord& particle = particles.velocity[contacts.particle[first]];
-    if (contacts.coupled[first] != 0) return stop_at_ground(first, end, h, tables.bodies, contacts, particle);
+    if (contacts.coupled[first] != 0 || tables.objects[object].kind == PointRef::Kind::kRope)
+      return stop_at_ground(first, end, h, tables.bodies, contacts, particle);
     for (std::size_t row = first; row < end; ++row) solve_row(row, h, contacts, particle);
   });
 }

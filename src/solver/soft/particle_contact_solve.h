@@ -44,7 +44,7 @@ void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Conta
               state::Particles& particles);
 
 /// Solves the rows of marked objects once more after something else has changed velocities: forces add up,
-/// and nothing is moved out.
+/// and nothing is moved out. Points of ropes are stopped as those of coupled groups are.
 void solve_contacts_again(const state::Tables& tables, std::span<const std::uint8_t> marked,
                           parallel::Range range, Real h, state::Contacts& contacts,
                           state::Particles& particles);

@@ -19,9 +19,15 @@ std::size_t vertex_count(const SurfaceContacts& contacts, const SurfaceGroup& gr
 
 /// Whether some surface may touch another, or itself.
 bool may_touch(const state::Tables& t, const SurfaceMeshes& surfaces) {
-  return surfaces.meshes.size() > 1 ||
-         std::any_of(surfaces.meshes.begin(), surfaces.meshes.end(),
-                     [&](const SurfaceMesh& mesh) { return t.objects[mesh.object].surface.self_contact; });
+  const auto count = [&](auto condition) {
+    return std::count_if(surfaces.meshes.begin(), surfaces.meshes.end(),
+                         [&](const SurfaceMesh& mesh) { return condition(t.objects[mesh.object]); });
+  };
+  const auto all = static_cast<std::ptrdiff_t>(surfaces.meshes.size());
+  const bool any_pair =
+      all > 1 && count([](const state::Deformable& object) { return object.touches_ropes; }) < all &&
+      count([](const state::Deformable& object) { return object.repulsion_strength > Real(0); }) < all;
+  return any_pair || count([](const state::Deformable& object) { return object.surface.self_contact; }) > 0;
 }
 
 /// Calls `work(group)` with each group, on several threads.
@@ -73,6 +79,8 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   contacts.regroup = true;
   contacts.substeps_left = substeps;
   if (!changed || !contacts.active) return;
+  contacts.any_rope = std::any_of(contacts.surfaces.meshes.begin(), contacts.surfaces.meshes.end(),
+                                  [](const SurfaceMesh& mesh) { return mesh.is_rope(); });
   const std::size_t count = contacts.surfaces.particle.size();
   const std::size_t meshes = contacts.surfaces.meshes.size();
   contacts.live_groups = 0;
@@ -85,6 +93,7 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   contacts.velocity.assign(count, {});
   contacts.cage.assign(count, {});
   contacts.stays.assign(count, 0);
+  contacts.load_share.assign(count, {});
   contacts.in_open_block.assign(count, 0);
   contacts.refreshed.assign(tables.objects.size(), 0);
   contacts.touching.assign(tables.objects.size(), 0);
@@ -106,17 +115,20 @@ void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceConta
   });
 }
 
-void find_contacts_of_stiff_solids(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
-                                   const state::Tables& tables) {
-  if (!contacts.active || !contacts.any_stiff) return;
-  refresh_surface_groups(tables, h, contacts);
+void find_contacts_before_solutions(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
+                                    const state::Tables& tables) {
+  if (!contacts.active) return;
+  // All groups are made at the same time in a step, whether a rope or a stiff solid is somewhere or not.
+  if (contacts.regroup || contacts.any_stiff) refresh_surface_groups(tables, h, contacts);
+  if (!contacts.any_stiff && !contacts.any_rope) return;
   for_groups_divided(pool, contacts, [&](SurfaceGroup& group, parallel::ThreadPool* workers) {
     const bool any_stiff = std::any_of(group.meshes.begin(), group.meshes.end(), [&](std::uint32_t mesh) {
       return contacts.stiff[contacts.surfaces.meshes[mesh].object] != 0;
     });
-    if (!any_stiff) return;
+    if (!any_stiff && !group.any_rope) return;
     // Planes that are out of date move what rolls or slides over an edge, which strains what is stiff.
-    if (needs_contacts(tables, h, contacts, group) || pairs_would_meet(tables, h, contacts, group))
+    if (needs_contacts(tables, h, contacts, group) ||
+        (any_stiff && pairs_would_meet(tables, h, contacts, group)))
       find_group_contacts(workers, tables, h, contacts, group);
   });
 }

@@ -27,9 +27,10 @@ void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceConta
 bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
                               state::Tables& tables);
 
-/// Finds contacts of groups with stiff solids before these are solved, as refresh_surface_contacts does.
-void find_contacts_of_stiff_solids(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
-                                   const state::Tables& tables);
+/// Finds contacts of groups with stiff solids or ropes before these are solved, as refresh_surface_contacts
+/// does.
+void find_contacts_before_solutions(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
+                                    const state::Tables& tables);
 
 /// Ends a particle substep, after everything else has moved particles: see truncate_group.
 void truncate_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace hooke::solver {
 
@@ -42,18 +43,31 @@ void place_vertices(const state::Tables& t, SurfaceContacts& c, SurfaceGroup& gr
   group.displacement = {};
 }
 
-/// Displacement of the faster points in a substep, over the length of their edges.
+/// The value below which are 95 % of those from `first` on; it changes their order.
+Real most_of(std::vector<Real>& values, std::size_t first) {
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto at = static_cast<std::ptrdiff_t>(kMovingShare * static_cast<double>(values.end() - begin - 1));
+  std::nth_element(begin, begin + at, values.end());
+  return *(begin + at);
+}
+
+/// Displacement of the faster points in a substep, over the length of their edges: of all, and of each rope,
+/// of which there may be few beside those of a cloth.
 Real displacement_of_fast_points(const state::Tables& t, const SurfaceContacts& c, Vec3 mean, Real h,
                                  SurfaceGroup& group) {
   group.speeds.clear();
-  for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
-    const Real edge = t.objects[c.surfaces.meshes[mesh].object].surface.edge;
-    const Real displacement = length(c.velocity[vertex].v - mean) * h / edge;
-    group.speeds.push_back(is_finite(c.velocity[vertex].v) ? displacement : Real(0));
-  });
-  const auto at = static_cast<std::ptrdiff_t>(kMovingShare * static_cast<double>(group.speeds.size() - 1));
-  std::nth_element(group.speeds.begin(), group.speeds.begin() + at, group.speeds.end());
-  return group.speeds[static_cast<std::size_t>(at)];
+  Real of_ropes = Real(0);
+  for (const std::uint32_t i : group.meshes) {
+    const SurfaceMesh& mesh = c.surfaces.meshes[i];
+    const std::size_t first = group.speeds.size();
+    const Real edge = t.objects[mesh.object].surface.edge;
+    for (std::uint32_t vertex = mesh.first_vertex; vertex < mesh.end_vertex(); ++vertex) {
+      const Real displacement = length(c.velocity[vertex].v - mean) * h / edge;
+      group.speeds.push_back(is_finite(c.velocity[vertex].v) ? displacement : Real(0));
+    }
+    if (mesh.is_rope()) of_ropes = std::max(of_ropes, most_of(group.speeds, first));
+  }
+  return std::max(of_ropes, most_of(group.speeds, 0));
 }
 
 void make_cages(const state::Tables& t, Real h, SurfaceContacts& c, SurfaceGroup& group) {
@@ -126,6 +140,11 @@ SurfaceBox fit_cell(const SurfaceMesh& mesh, std::uint32_t number, SurfaceBoxes&
     }
     boxes.triangles[number].set(lane, one);
   }
+  if (mesh.is_rope()) {
+    box = at(mesh.vertices[cell.first_vertex]);
+    for (std::uint32_t edge = cell.first_edge; edge < cell.end_edge; ++edge)
+      box = join(box, join(at(mesh.edges[edge].vertex[0]), at(mesh.edges[edge].vertex[1])));
+  }
   const std::uint32_t count = (cell.end_edge - cell.first_edge + 3) / 4 * 4;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
     const std::uint32_t edge = cell.first_edge + lane;
@@ -188,6 +207,12 @@ class RowMaker {
     }
   }
 
+  /// Distance of two edges below which a row may hold them apart.
+  [[nodiscard]] Real edge_near(std::uint32_t mesh_a, std::uint32_t mesh_b) const {
+    const Real share = any_rope(mesh_a, mesh_b) ? kRopeShare + kSurfaceMargin : kEdgeShare + kEdgeMargin;
+    return share * distance_of(mesh_a, mesh_b);
+  }
+
   void take(const SurfaceFound& found) {
     if ((found.flags & SurfaceFound::kUncertain) != 0 && !separate(found)) return;
     if ((found.flags & SurfaceFound::kReachable) != 0) add_pair(found);
@@ -199,6 +224,10 @@ class RowMaker {
     return t_.objects[c_.surfaces.meshes[mesh].object];
   }
   [[nodiscard]] Vec3 x(std::uint32_t vertex) const { return c_.position[vertex].x; }
+  [[nodiscard]] const SurfaceMesh& mesh(std::uint32_t number) const { return c_.surfaces.meshes[number]; }
+  [[nodiscard]] bool any_rope(std::uint32_t mesh_a, std::uint32_t mesh_b) const {
+    return mesh(mesh_a).is_rope() || mesh(mesh_b).is_rope();
+  }
 
   [[nodiscard]] Real distance_of(const SurfaceFound& found) const {
     return distance_of(found.first_mesh, found.second_mesh);
@@ -276,12 +305,33 @@ class RowMaker {
 
   /// The share of the thickness that the pair keeps; 0 if other features speak for it.
   [[nodiscard]] Real share_of_edges(const SurfaceFound& found) const {
+    if (any_rope(found.first_mesh, found.second_mesh)) return share_of_segments(found);
     for (const Real weight : found.weight) {
       if (weight == Real(0)) return Real(0);
     }
     const SurfaceEdge& first = c_.surfaces.meshes[found.first_mesh].edges[found.first_feature];
     const SurfaceEdge& second = c_.surfaces.meshes[found.second_mesh].edges[found.second_feature];
     return is_in_wedge(first, -found.normal) && is_in_wedge(second, found.normal) ? kEdgeShare : Real(0);
+  }
+
+  /// The same for a segment of a rope and another one or an edge. A rope has no faces, so that its segments
+  /// speak for the ends of edges, too. The points of a rope are left to the faces of the other.
+  [[nodiscard]] Real share_of_segments(const SurfaceFound& found) const {
+    const bool other_has_faces = !mesh(found.first_mesh).is_rope() || !mesh(found.second_mesh).is_rope();
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::uint32_t number = side == 0 ? found.first_mesh : found.second_mesh;
+      const SurfaceEdge& edge = mesh(number).edges[side == 0 ? found.first_feature : found.second_feature];
+      const Vec3 outward = side == 0 ? -found.normal : found.normal;
+      const bool at_second = found.weight[2 * side] == Real(0);
+      if (!at_second && found.weight[2 * side + 1] != Real(0)) {
+        if (!is_in_wedge(edge, outward)) return Real(0);
+        continue;
+      }
+      const std::size_t end = at_second ? 1 : 0;
+      if ((edge.owns_vertex >> end & 1U) == 0 || (other_has_faces && mesh(number).is_rope())) return Real(0);
+      if (!is_in_cone(number, edge.vertex[end], outward)) return Real(0);
+    }
+    return other_has_faces ? kRidgeShare : kRopeShare;
   }
 
   [[nodiscard]] Real share_of_face(const SurfaceFound& found) const {
@@ -304,7 +354,8 @@ class RowMaker {
       return is_in_wedge(mesh.edges[triangle.edge[k]], found.normal) ? kRidgeShare : Real(0);
     }
     const std::uint32_t tip = triangle.vertex[corner];
-    if ((triangle.owns_vertex >> corner & 1U) == 0 || found.vertex[0] > tip) return Real(0);
+    if ((triangle.owns_vertex >> corner & 1U) == 0) return Real(0);
+    if (found.vertex[0] > tip && !this->mesh(found.first_mesh).is_rope()) return Real(0);
     return is_in_cone(found.second_mesh, tip, found.normal) ? kRidgeShare : Real(0);
   }
 
@@ -320,8 +371,25 @@ class RowMaker {
            t_.objects[b].tetrahedra.count > 0;
   }
 
-  void add_row(const SurfaceFound& found) {
-    if (!(found.share > Real(0))) return;
+  /// A point of a rope that lies over a ridge or a tip of a flat place is held by the plane of a face, at the
+  /// whole thickness. Over ridges at less it would sink between two searches, and rise again over a face.
+  [[nodiscard]] SurfaceFound on_plane(const SurfaceFound& found) const {
+    constexpr Real kFlat = Real(0.97);  // Cosine between the normal and that of the face.
+    if (found.is_edges || found.share != kRidgeShare || !mesh(found.first_mesh).is_rope()) return found;
+    const auto& [p, a, b, q] = found.vertex;
+    const Vec3 face = cross(x(b) - x(a), x(q) - x(a));
+    const Real side = dot(face, found.normal);
+    const Real size = length(face);
+    if (!(std::abs(side) > kFlat * size)) return found;
+    SurfaceFound turned = found;
+    turned.normal = ((side > Real(0) ? Real(1) : Real(-1)) / size) * face;
+    turned.share = Real(1);
+    return turned;
+  }
+
+  void add_row(const SurfaceFound& at) {
+    if (!(at.share > Real(0))) return;
+    const SurfaceFound found = on_plane(at);
     SurfaceRow row;
     row.vertex = found.vertex;
     row.weight = found.weight;
@@ -365,12 +433,14 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
   group.face_pairs.clear();
   group.edge_pairs.clear();
   group.known = true;
+  group.first_load = group.end_load = 0;
   ++group.counts.searches;
   for_items(pool, group.meshes.size(), [&](std::size_t i) {
     const std::uint32_t mesh = group.meshes[i];
     const Real radius = tables.objects[contacts.surfaces.meshes[mesh].object].surface.radius;
     const Real reach = (Real(1) + kSurfaceMargin) * radius + Real(2) * group.reserve;
-    const Real edge_reach = (kEdgeShare + kEdgeMargin) * radius + Real(2) * group.reserve;
+    const Real edge_reach =
+        group.any_rope ? reach : (kEdgeShare + kEdgeMargin) * radius + Real(2) * group.reserve;
     fit_boxes(contacts, contacts.surfaces.meshes[mesh], reach, edge_reach, contacts.boxes[mesh]);
   });
   if (group.found.size() < group.pairs.size()) group.found.resize(group.pairs.size());
@@ -389,11 +459,16 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
                            .cage = contacts.cage.data(),
                            .joined = contacts.surfaces.joined.data(),
                            .face_near = (Real(1) + kSurfaceMargin) * distance,
-                           .edge_near = (kEdgeShare + kEdgeMargin) * distance,
+                           .edge_near = maker.edge_near(a, b),
                            .reserve = group.reserve},
                           group.found[i]);
     maker.set_shares(group.found[i]);
   });
+  const auto pairs = std::span(group.found).first(group.pairs.size());
+  group.overflows = std::any_of(pairs.begin(), pairs.end(), [](const std::vector<SurfaceFound>& found) {
+    return found.size() == kMostFound;
+  });
+  if (group.overflows) return;
   // Rows go into blocks in the order of pairs, whoever found them.
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
     for (const SurfaceFound& found : group.found[i]) maker.take(found);

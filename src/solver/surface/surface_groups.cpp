@@ -20,18 +20,44 @@ struct Path {
   Real fastest = Real(0);
 };
 
+/// Grows a box by a point, unless a coordinate is not a number. Branches on each would cost more than all
+/// else.
+void take(Vec3 p, Box& box) {
+  const auto least = [](Real a, Real b) { return a < b ? a : b; };
+  const auto most = [](Real a, Real b) { return a > b ? a : b; };
+  box.lower = {least(p.x, box.lower.x), least(p.y, box.lower.y), least(p.z, box.lower.z)};
+  box.upper = {most(p.x, box.upper.x), most(p.y, box.upper.y), most(p.z, box.upper.z)};
+}
+
+/// Calls `visit(x, v, start)` with each vertex of a surface.
+template <class Visit>
+void for_paths(const state::Tables& t, const SurfaceContacts& contacts, const SurfaceMesh& mesh,
+               Visit visit) {
+  for (std::uint32_t i = mesh.first_vertex; i < mesh.end_vertex(); ++i) {
+    const std::uint32_t particle = contacts.surfaces.particle[i];
+    visit(t.particles.position[particle].x, t.particles.velocity[particle].v, contacts.start[i].x);
+  }
+}
+
 Path path_of(const state::Tables& t, const SurfaceContacts& contacts, const SurfaceMesh& mesh, Real time) {
   Path path;
   Real fastest = Real(0);
-  for (std::uint32_t i = mesh.first_vertex; i < mesh.end_vertex(); ++i) {
-    const std::uint32_t particle = contacts.surfaces.particle[i];
-    const Vec3 x = t.particles.position[particle].x;
-    const Vec3 v = t.particles.velocity[particle].v;
-    for (const Vec3 p : {x, x + time * v, contacts.start[i].x}) {
-      if (is_finite(p)) path.box = merge(path.box, {p, p});  // Others are quarantined when the step ends.
+  for_paths(t, contacts, mesh, [&](Vec3 x, Vec3 v, Vec3 start) {
+    for (const Vec3 p : {x, x + time * v, start}) take(p, path.box);
+    const Real squared = length_squared(v);
+    fastest = squared > fastest ? squared : fastest;
+  });
+  path.fastest = std::sqrt(fastest);
+  if (is_finite(path.box.upper - path.box.lower) && std::isfinite(fastest)) return path;
+  // Some point is infinite; it is quarantined when the step ends.
+  path = {};
+  fastest = Real(0);
+  for_paths(t, contacts, mesh, [&](Vec3 x, Vec3 v, Vec3 start) {
+    for (const Vec3 p : {x, x + time * v, start}) {
+      if (is_finite(p)) take(p, path.box);
     }
     if (is_finite(v)) fastest = std::max(fastest, length_squared(v));
-  }
+  });
   path.fastest = std::sqrt(fastest);
   return path;
 }
@@ -63,6 +89,18 @@ bool refresh_bounds(const state::Tables& t, Real h, SurfaceContacts& contacts) {
   return any;
 }
 
+/// Whether two surfaces touch at all, by their filters and by what they are. Ropes that both touch_ropes are
+/// solved as one (docs/decisions/0024-ropes-that-touch.md), and those that both repel keep their distance.
+bool touch(const state::Tables& t, const SurfaceMeshes& surfaces, std::uint32_t a, std::uint32_t b) {
+  const state::Deformable& first = t.objects[surfaces.meshes[a].object];
+  const state::Deformable& second = t.objects[surfaces.meshes[b].object];
+  if (!state::filters_agree(first.surface.filter, second.surface.filter)) return false;
+  if (first.touches_ropes && second.touches_ropes) return false;
+  if (first.repulsion_strength > Real(0) && second.repulsion_strength > Real(0)) return false;
+  const std::array<std::uint32_t, 2> pair = {std::min(a, b), std::max(a, b)};
+  return !std::binary_search(surfaces.sewn.begin(), surfaces.sewn.end(), pair);
+}
+
 /// Lists the pairs of surfaces whose bounds overlap, in ascending order.
 void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
   const std::vector<SurfaceMesh>& meshes = contacts.surfaces.meshes;
@@ -81,21 +119,22 @@ void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
       const std::uint32_t b = order[j];
       if (contacts.bounds[b].lower.x > contacts.bounds[a].upper.x) break;
       if (!overlap(contacts.bounds[a], contacts.bounds[b])) continue;
-      if (!state::filters_agree(object.surface.filter, t.objects[meshes[b].object].surface.filter)) continue;
+      if (!touch(t, contacts.surfaces, a, b)) continue;
       contacts.next_pairs.push_back({std::min(a, b), std::max(a, b)});
     }
   }
   std::sort(contacts.next_pairs.begin(), contacts.next_pairs.end());
 }
 
-/// Takes over what was found by a group of the same surfaces and pairs.
+/// Takes over what was found by a group of the same surfaces and pairs. Groups stand in the order of their
+/// first surfaces.
 void keep_found(SurfaceContacts& contacts, SurfaceGroup& group) {
-  for (std::size_t i = 0; i < contacts.live_groups; ++i) {
-    SurfaceGroup& old = contacts.groups[i];
-    if (!old.known || old.meshes != group.meshes || old.pairs != group.pairs) continue;
-    std::swap(old, group);
-    return;
-  }
+  const auto end = contacts.groups.begin() + static_cast<std::ptrdiff_t>(contacts.live_groups);
+  const auto old =
+      std::lower_bound(contacts.groups.begin(), end, group.meshes.front(),
+                       [](const SurfaceGroup& g, std::uint32_t mesh) { return g.meshes.front() < mesh; });
+  if (old != end && old->known && old->meshes == group.meshes && old->pairs == group.pairs)
+    std::swap(*old, group);
 }
 
 void make_groups(SurfaceContacts& contacts) {
@@ -122,6 +161,13 @@ void make_groups(SurfaceContacts& contacts) {
   for (std::uint32_t i = 0; i < mesh_count; ++i) {
     const std::uint32_t number = group_of[sets.root(i)];
     if (number != SurfaceNode::kLeaf) contacts.next_groups[number].meshes.push_back(i);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    SurfaceGroup& group = contacts.next_groups[i];
+    group.any_rope = std::any_of(group.meshes.begin(), group.meshes.end(), [&](std::uint32_t mesh) {
+      return contacts.surfaces.meshes[mesh].is_rope();
+    });
+    group.first_load = group.end_load = 0;
   }
   for (std::size_t i = 0; i < count; ++i) keep_found(contacts, contacts.next_groups[i]);
   std::swap(contacts.groups, contacts.next_groups);

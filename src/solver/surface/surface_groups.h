@@ -18,6 +18,21 @@ struct SurfaceCounts {
   std::uint32_t uncertain = 0;  ///< Pairs that touched or crossed when they were found.
 };
 
+/// What presses on a point of a rope in a substep: the side of a row of contact that faces it.
+struct RopeLoad {
+  std::uint32_t particle = 0;   ///< Row of the point.
+  std::uint32_t block = 0;      ///< Block of the row in its group.
+  int lane = 0;                 ///< Its lane there.
+  bool first_side = true;       ///< Whether the rope is the first side of the row.
+  Real share = Real(0);         ///< Weight of the point in the row.
+  Real inverse_mass = Real(0);  ///< That of the other side along any direction [1/kg]; 0 if it is held.
+  Vec3 normal = {};             ///< Unit vector from the other side to the rope.
+  Vec3 surface = {};            ///< Velocity of the other side [m/s].
+  Real separation = Real(0);    ///< Distance to go until the row acts [m], not negative.
+  Real impulse = Real(0);       ///< With which the rope was solved [N s].
+  bool solved = false;          ///< Whether the rope was solved with it.
+};
+
 /// Surfaces that may touch each other, one or more, with what was found between them. Groups share no
 /// particle, and what one does has no influence on another.
 struct SurfaceGroup {
@@ -25,6 +40,7 @@ struct SurfaceGroup {
   std::vector<std::array<std::uint32_t, 2>> pairs;  ///< Meshes that may touch; twice the same for one that
                                                     ///< touches itself.
   bool known = false;                               ///< What stands below was found in this step.
+  bool overflows = false;      ///< More pairs were found than there is room for: nothing of it moves.
   bool held = false;           ///< Some vertex is pinned: the group has no motion of its own.
   DVec3 origin = {};           ///< Origin of the positions of its vertices [m].
   Real reserve = Real(0);      ///< Rounding of these positions [m].
@@ -38,6 +54,8 @@ struct SurfaceGroup {
   std::vector<std::uint32_t> hot;                ///< Scratch memory: pairs that are corrected.
   std::vector<Real> speeds;                      ///< Scratch memory.
   SurfaceCounts counts;
+  bool any_rope = false;                       ///< Some of the surfaces is a rope.
+  std::uint32_t first_load = 0, end_load = 0;  ///< Its rows of SurfaceContacts::loads.
 };
 
 /// All contacts of surfaces. Nothing of it lives from step to step but memory.
@@ -66,8 +84,12 @@ struct SurfaceContacts {
   std::vector<std::uint8_t> touching;                    ///< By object: it is in a group.
   std::vector<std::uint8_t> stiff;      ///< By object: it is a solid that is solved as a whole.
   bool any_stiff = false;               ///< Some object is.
+  bool any_rope = false;                ///< Some surface is a rope.
   std::vector<std::uint8_t> refreshed;  ///< By object: contacts were found anew in this substep.
-  bool regroup = false;                 ///< All bounds are to be made anew.
+  std::vector<RopeLoad> loads;          ///< What presses on ropes in this substep, by group and row.
+  std::vector<std::array<std::uint32_t, 2>> load_order;  ///< By point: its row, and that of a load.
+  std::vector<Real> load_share;  ///< By vertex: sum of its weights in rows that press on ropes.
+  bool regroup = false;          ///< All bounds are to be made anew.
 
   /// Calls `visit` with each group.
   template <class Visit>

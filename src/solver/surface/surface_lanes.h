@@ -10,6 +10,7 @@
 
 #include "solver/simd/numbers.h"
 #include "solver/surface/surface_kernels.h"
+#include "solver/surface/surface_tuning.h"
 
 #include <algorithm>
 #include <array>
@@ -379,14 +380,16 @@ class SurfaceSearcher {
     unsigned zeros = 0;
     for (unsigned k = 0; k < 4; ++k) zeros |= lane[5 + k][j] == Real(0) ? 1U << k : 0U;
     if (zeros == 0) return false;
-    if constexpr (kFirstSide == 2) return true;
+    if constexpr (kFirstSide == 2) return !s_.mesh_a->is_rope() && !s_.mesh_b->is_rope();
     const SurfaceMesh& mesh = batch.turned[i] != 0 ? *s_.mesh_a : *s_.mesh_b;
     const SurfaceTriangle& triangle = mesh.triangles[batch.feature[1][i]];
     for (unsigned k = 0; k < 3; ++k) {
       const unsigned next = (k + 1) % 3;
       if (zeros == 1U << (k + 1)) return (triangle.owns_edge >> next & 1U) == 0;
       if (zeros == (14U & ~(1U << (k + 1)))) {
-        return (triangle.owns_vertex >> k & 1U) == 0 || batch.record[0][i] > 4 * triangle.vertex[k];
+        if ((triangle.owns_vertex >> k & 1U) == 0) return true;
+        const SurfaceMesh& points = batch.turned[i] != 0 ? *s_.mesh_b : *s_.mesh_a;
+        return batch.record[0][i] > 4 * triangle.vertex[k] && !points.is_rope();
       }
     }
     return false;
@@ -407,6 +410,7 @@ class SurfaceSearcher {
       if (!(lane[0][j] > Real(0))) continue;
       if (lane[0][j] == Real(SurfaceFound::kNear) && is_left_to_others<kFirstSide>(batch, i + j, lane, j))
         continue;
+      if (found_.size() == kMostFound) return;
       SurfaceFound& found = found_.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
         found.vertex[k] = batch.record[k][i + j] / 4;

@@ -162,6 +162,14 @@ class MeshBuilder {
     for (SurfaceTriangle& triangle : mesh.triangles) {
       for (std::uint32_t& edge : triangle.edge) edge = edge_row[edge];
     }
+    std::vector<std::uint8_t> taken(vertex_count_, 0);
+    for (SurfaceEdge& edge : mesh.edges) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        std::uint8_t& is_taken = taken[edge.vertex[k] - mesh.first_vertex];
+        if (is_taken == 0) edge.owns_vertex |= static_cast<std::uint8_t>(1U << k);
+        is_taken = 1;
+      }
+    }
   }
 
   [[nodiscard]] SurfaceEdge edge_at(std::uint32_t edge, std::uint32_t first) const {
@@ -208,9 +216,51 @@ class MeshBuilder {
   std::uint32_t vertex_count_;
 };
 
+/// Appends the segments of a rope. Each of them speaks for its first point, the last one for both.
+void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfaces) {
+  constexpr std::uint32_t kSegmentsOfCell = 4;
+  const state::Deformable& object = t.objects[row];
+  const std::uint32_t segments = object.segments.count;
+  const auto joins = [&](std::uint32_t i) {
+    return i < segments && t.segments.joins(object.segments.first + i);
+  };
+  SurfaceMesh& mesh = surfaces.meshes.emplace_back();
+  mesh.object = row;
+  mesh.first_vertex = static_cast<std::uint32_t>(surfaces.particle.size());
+  mesh.vertex_count = segments + 1;
+  std::vector<Vec3> centers;
+  for (std::uint32_t i = 0; i <= segments; ++i) {
+    const std::uint32_t vertex = mesh.first_vertex + i;
+    const auto first_edge = static_cast<std::uint32_t>(mesh.edges.size());
+    if (i == 0 || (joins(i) && first_edge - mesh.cells.back().first_edge == kSegmentsOfCell)) {
+      mesh.cells.push_back({.first_vertex = i, .first_edge = first_edge, .first_group = mesh.edge_groups++});
+      centers.push_back({static_cast<Real>(i), Real(0), Real(0)});
+    }
+    surfaces.particle.push_back(object.particles.first + i);
+    surfaces.mesh_of.push_back(static_cast<std::uint32_t>(surfaces.meshes.size() - 1));
+    mesh.vertices.push_back(vertex);
+    mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
+    if (i > 0 && joins(i - 1)) mesh.neighbors.push_back(vertex - 1);
+    if (joins(i)) {
+      mesh.neighbors.push_back(vertex + 1);
+      SurfaceEdge edge = {.vertex = {vertex, vertex + 1}};
+      edge.owns_vertex = joins(i + 1) ? 1 : 3;
+      mesh.edges.push_back(edge);
+    }
+    mesh.cells.back().end_vertex = i + 1;
+    mesh.cells.back().end_edge = static_cast<std::uint32_t>(mesh.edges.size());
+  }
+  mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
+  mesh.nodes = build_surface_tree(centers);
+}
+
 /// Appends the surface of an object; `vertex_of` is scratch memory by particle, full of kNone.
 void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::uint32_t>& vertex_of,
                     SurfaceMeshes& surfaces) {
+  if (t.objects[row].kind == PointRef::Kind::kRope) {
+    if (t.objects[row].touches_surfaces) append_rope(t, row, surfaces);
+    return;
+  }
   std::vector<Triangle> triangles = state::surface_triangles(t, t.objects[row]);
   if (triangles.empty() || !t.objects[row].surface.rest_points) return;
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();
@@ -239,14 +289,15 @@ void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::
 /// Calls `visit` with the particles by which a place of a hook is joined with others: all of a surface, and
 /// of a rope only the nearest one, so that hooks along a rope do not join all that hangs on it.
 template <class Visit>
-void for_joined_particles(const state::HookPlace& place, std::span<const std::uint32_t> vertex_of,
-                          Visit visit) {
+void for_joined_particles(const state::Tables& t, const state::HookPlace& place,
+                          std::span<const std::uint32_t> vertex_of, Visit visit) {
+  const bool is_rope = t.objects[place.object].kind == PointRef::Kind::kRope;
   std::uint32_t nearest = 0;
   for (std::uint32_t k = 0; k < place.particle_count; ++k) {
     if (place.weight[k] > place.weight[nearest]) nearest = k;
   }
   for (std::uint32_t k = 0; k < place.particle_count; ++k) {
-    if (k == nearest || vertex_of[place.particle[k]] != kNone) visit(place.particle[k]);
+    if (k == nearest || (!is_rope && vertex_of[place.particle[k]] != kNone)) visit(place.particle[k]);
   }
 }
 
@@ -257,7 +308,7 @@ void join_hooked(const state::Tables& t, std::span<const std::uint32_t> vertex_o
     if (hook.broken || hook.kind == HookKind::kDistance || !hook.a.is_point() || !hook.b.is_point()) continue;
     std::uint32_t first = kNone;
     for (const state::HookPlace* place : {&hook.a, &hook.b}) {
-      for_joined_particles(*place, vertex_of, [&](std::uint32_t particle) {
+      for_joined_particles(t, *place, vertex_of, [&](std::uint32_t particle) {
         if (first == kNone) first = particle;
         sets.merge(first, particle);
       });
@@ -266,6 +317,29 @@ void join_hooked(const state::Tables& t, std::span<const std::uint32_t> vertex_o
   surfaces.joined.resize(surfaces.particle.size());
   for (std::uint32_t i = 0; i < surfaces.joined.size(); ++i)
     surfaces.joined[i] = sets.root(surfaces.particle[i]);
+}
+
+/// Lists the pairs of SurfaceMeshes::sewn.
+void list_sewn(const state::Tables& t, std::span<const std::uint32_t> vertex_of, SurfaceMeshes& surfaces) {
+  constexpr std::ptrdiff_t kHooksOfSeam = 3;
+  std::vector<std::array<std::uint32_t, 2>> hooked;  // A pair for each hook, for one that slides three.
+  for (const state::Hook& hook : t.hooks) {
+    if (hook.broken || hook.kind == HookKind::kDistance || !hook.a.is_point() || !hook.b.is_point()) continue;
+    const std::uint32_t a = vertex_of[hook.a.particle[0]];
+    const std::uint32_t b = vertex_of[hook.b.particle[0]];
+    if (a == kNone || b == kNone) continue;
+    const auto [first, second] = std::minmax(surfaces.mesh_of[a], surfaces.mesh_of[b]);
+    if (!surfaces.meshes[first].is_rope() && !surfaces.meshes[second].is_rope()) continue;
+    const auto times = static_cast<std::size_t>(hook.kind == HookKind::kRopeSlide ? kHooksOfSeam : 1);
+    hooked.insert(hooked.end(), times, {first, second});
+  }
+  std::sort(hooked.begin(), hooked.end());
+  surfaces.sewn.clear();
+  for (auto i = hooked.begin(); i != hooked.end();) {
+    const auto end = std::upper_bound(i, hooked.end(), *i);
+    if (end - i >= kHooksOfSeam) surfaces.sewn.push_back(*i);
+    i = end;
+  }
 }
 
 }  // namespace
@@ -285,6 +359,7 @@ bool refresh_surfaces(const state::Tables& tables, SurfaceMeshes& surfaces) {
   }
   for (std::uint32_t i = 0; i < surfaces.particle.size(); ++i) vertex_of[surfaces.particle[i]] = i;
   join_hooked(tables, vertex_of, surfaces);
+  list_sewn(tables, vertex_of, surfaces);
   return stale;
 }
 

@@ -11,13 +11,13 @@
 
 /// \file
 /// The surfaces of deformables, as contacts between them see them: the triangles of a cloth and the outer
-/// faces of a solid, with their edges and vertices. All of it follows from what rows join and
-/// from the form at rest, so that a World that was restored makes the same again, in the same order.
+/// faces of a solid, with their edges and vertices; of a rope, its segments. All of it follows from what rows
+/// join and from the form at rest, so that a World that was restored makes the same again, in the same order.
 
 namespace hooke::solver {
 
-/// Up to two triangles that share an edge, with the vertices and edges that they own. Each vertex and each
-/// edge is owned by one cell. Rows [first, end) of the features of a mesh.
+/// Up to two triangles that share an edge, with the vertices and edges that they own, or a few segments of a
+/// rope. Each vertex and each edge is owned by one cell. Rows [first, end) of the features of a mesh.
 struct SurfaceCell {
   std::uint32_t first_vertex = 0, end_vertex = 0;
   std::uint32_t first_edge = 0, end_edge = 0;
@@ -47,6 +47,7 @@ struct SurfaceEdge {
 
   std::array<std::uint32_t, 2> vertex = {};
   std::array<std::uint32_t, 2> opposite = {kNone, kNone};  ///< Third corners of the triangles at it.
+  std::uint8_t owns_vertex = 0;  ///< Bit k says that of the edges at end k this one speaks for it.
 };
 
 /// The surface of one object. Vertices are numbered through all surfaces, other parts within their surface.
@@ -66,6 +67,7 @@ struct SurfaceMesh {
   std::vector<std::uint32_t> neighbors;
 
   [[nodiscard]] std::uint32_t end_vertex() const { return first_vertex + vertex_count; }
+  [[nodiscard]] bool is_rope() const { return triangles.empty(); }
   [[nodiscard]] std::span<const std::uint32_t> neighbors_of(std::uint32_t vertex) const {
     const std::uint32_t i = vertex - first_vertex;
     return std::span(neighbors).subspan(neighbor_begin[i], neighbor_begin[i + 1] - neighbor_begin[i]);
@@ -82,6 +84,9 @@ struct SurfaceMeshes {
   /// Vertices with the same number are held together by hooks, and touch each other as little as one vertex
   /// touches itself.
   std::vector<std::uint32_t> joined;
+  /// Pairs of a rope and another surface that do not touch, since a hook slides along the rope or three hooks
+  /// or more sew them together; each in ascending order, and all.
+  std::vector<std::array<std::uint32_t, 2>> sewn;
 
   [[nodiscard]] std::uint32_t object_of(std::uint32_t vertex) const { return meshes[mesh_of[vertex]].object; }
 };

@@ -1,5 +1,6 @@
 #include "solver/surface/surface_rows.h"
 
+#include "solver/surface/rope_loads.h"
 #include "solver/surface/surface_kernels.h"
 #include "solver/surface/surface_tuning.h"
 
@@ -73,7 +74,10 @@ void solve_surface_rows(Real h, bool again, SurfaceContacts& contacts, SurfaceGr
   for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t) {
     contacts.velocity[vertex] = particles.velocity[particle[vertex]];
   });
-  if (!again) wide::prepare_surface_rows(group.rows, h, contacts.position.data(), contacts.velocity.data());
+  if (!again) {
+    wide::prepare_surface_rows(group.rows, h, contacts.position.data(), contacts.velocity.data());
+    apply_rope_loads(contacts, group);
+  }
   for (int sweep = 1; sweep <= kSurfaceSweeps; ++sweep)
     wide::solve_surface_rows(group.rows, contacts.velocity.data());
   for_vertices(contacts, group, [&](std::uint32_t vertex, std::uint32_t) {

@@ -42,6 +42,7 @@ class Truncation {
         displacement_(vector_cast<Real>(group.displacement)) {}
 
   void run() {
+    if (group_.overflows) return hold_all();
     clip_all();
     set_least(group_);
     int rounds = 0;
@@ -198,6 +199,14 @@ class Truncation {
                });
       measure(Real(0));
     }
+  }
+
+  void hold_all() {
+    for_vertices(c_, group_, [&](std::uint32_t vertex, std::uint32_t mesh) {
+      c_.stays[vertex] = 0;
+      c_.position[vertex].x = particles_.position[c_.surfaces.particle[vertex]].x + c_.shift[mesh];
+      stay(vertex);
+    });
   }
 
   bool stay(std::uint32_t vertex) {

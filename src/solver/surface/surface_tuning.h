@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include <cstddef>
 #include <limits>
 
 /// \file
@@ -21,6 +22,9 @@ inline constexpr Real kSurfaceRecoverySpeed = Real(1);
 /// an edge that slides over edges bumps along, and loses speed without friction.
 inline constexpr Real kRidgeShare = Real(0.8);
 inline constexpr Real kEdgeShare = Real(0.5);
+
+/// Distance that a segment of a rope keeps from others and from edges, over the thickness [ratio].
+inline constexpr Real kRopeShare = Real(1);
 
 /// A pair of a vertex and a face, or of edges, has a row where it comes within this share of the thickness
 /// beyond its distance [ratio].
@@ -56,6 +60,10 @@ inline constexpr Real kCageDisplacement = Real(0.25);
 /// Share of the points that may be clipped to their cages before contacts are found anew [ratio]. At 0.01 a
 /// moving front was clipped for a whole substep.
 inline constexpr double kClippedShare = 0.002;
+
+/// Most pairs that are found between two surfaces: some hundred megabytes. More of them, where points fly
+/// apart, hold the whole group back.
+inline constexpr std::size_t kMostFound = std::size_t{1} << 22U;
 
 // Truncation.
 
