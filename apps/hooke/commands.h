@@ -17,6 +17,7 @@ int command_render(Arguments arguments);
 int command_export(Arguments arguments);
 int command_convert(Arguments arguments);
 int command_settle(Arguments arguments);
+int command_load(Arguments arguments);
 int command_validate(Arguments arguments);
 int command_new(Arguments arguments);
 int command_check(Arguments arguments);

@@ -35,6 +35,7 @@ constexpr std::array kCommands = {
     Command{"convert", "convert a model from .3ds .obj .stl .ply .gltf .glb to .3ds .obj .stl .glb",
             command_convert},
     Command{"settle", "find the poses in which a model lies still, and their probabilities", command_settle},
+    Command{"load", "raise a load until something breaks or collapses; forces in every member", command_load},
     Command{"validate", "check scene files and the models they use; nothing may be in vain",
             command_validate},
     Command{"new", "write a scene to start from", command_new},

@@ -476,6 +476,10 @@ struct SceneObject {
 /// Positions of the points of a rope, a cloth, a solid or particles, as World::positions gives them; none for
 /// other objects.
 [[nodiscard]] PointView positions_of(const World& world, const SceneObject& object);
+/// Velocities of the points of such an object, as World::velocities gives them; none for others.
+[[nodiscard]] PointView velocities_of(const World& world, const SceneObject& object);
+/// A reference to point `index` of such an object, whether or not it has so many; an empty one for others.
+[[nodiscard]] PointRef point_of(const SceneObject& object, std::size_t index);
 
 /// One expectation, evaluated.
 struct SceneVerdict {

@@ -24,21 +24,6 @@ DVec3 mean_of(const PointView& points) {
   return points.empty() ? sum : 1.0 / static_cast<double>(points.size()) * sum;
 }
 
-PointView velocities_of(const World& world, const SceneObject& object) {
-  switch (object.kind) {
-    case Kind::kRope:
-      return world.velocities(object.rope);
-    case Kind::kCloth:
-      return world.velocities(object.cloth);
-    case Kind::kSolid:
-      return world.velocities(object.solid);
-    case Kind::kParticles:
-      return world.velocities(object.particles);
-    default:
-      return {};
-  }
-}
-
 DVec3 mix(DVec3 a, DVec3 b, double part) {
   return (1 - part) * a + part * b;
 }

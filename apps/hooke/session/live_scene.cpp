@@ -1,6 +1,7 @@
 #include "hooke/session/live_scene.h"
 
 #include "hooke/session/added_objects.h"
+#include "hooke/shape_radius.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,25 +78,9 @@ Real connected_mass(const Simulation& simulation, const std::string& name) {
   return mass;
 }
 
-/// Radius of a ball about the origin of a shape that holds it [m], or a usual size if its mesh is not known.
-double reach_of(const Shape& shape) {
-  switch (shape.kind) {
-    case ShapeKind::kBox:
-      return static_cast<double>(length(shape.half_extents));
-    case ShapeKind::kSphere:
-      return static_cast<double>(shape.radius);
-    case ShapeKind::kCapsule:
-    case ShapeKind::kCylinder:
-    case ShapeKind::kCone:
-      return static_cast<double>(shape.radius + shape.half_height);
-    default:
-      return kUsualReach;
-  }
-}
-
-/// The same for an object of a scene that is to be dropped.
+/// Radius of a ball about the origin of an object that is to be dropped which holds it [m], or a usual size.
 double reach_of(const SceneObjects& objects) {
-  if (!objects.bodies.empty()) return reach_of(objects.bodies[0].desc.shape);
+  if (!objects.bodies.empty()) return radius_of(objects.bodies[0].desc.shape, kUsualReach);
   if (!objects.solids.empty()) return 0.5 * static_cast<double>(length(objects.solids[0].desc.size));
   return 0;
 }

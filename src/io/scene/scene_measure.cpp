@@ -17,21 +17,6 @@ using Op = SceneExpectation::Op;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-PointView velocities_of(const World& world, const SceneObject& object) {
-  switch (object.kind) {
-    case SceneObject::Kind::kRope:
-      return world.velocities(object.rope);
-    case SceneObject::Kind::kCloth:
-      return world.velocities(object.cloth);
-    case SceneObject::Kind::kSolid:
-      return world.velocities(object.solid);
-    case SceneObject::Kind::kParticles:
-      return world.velocities(object.particles);
-    default:
-      return {};
-  }
-}
-
 double coordinate(DVec3 position, Quantity quantity) {
   if (quantity == Quantity::kX) return position.x;
   return quantity == Quantity::kZ ? position.z : position.y;
@@ -270,6 +255,39 @@ PointView positions_of(const World& world, const SceneObject& object) {
       return world.positions(object.solid);
     case SceneObject::Kind::kParticles:
       return world.positions(object.particles);
+    default:
+      return {};
+  }
+}
+
+PointView velocities_of(const World& world, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return world.velocities(object.rope);
+    case SceneObject::Kind::kCloth:
+      return world.velocities(object.cloth);
+    case SceneObject::Kind::kSolid:
+      return world.velocities(object.solid);
+    case SceneObject::Kind::kParticles:
+      return world.velocities(object.particles);
+    default:
+      return {};
+  }
+}
+
+PointRef point_of(const SceneObject& object, std::size_t index) {
+  const auto made = [&](PointRef::Kind kind, const auto& id) -> PointRef {
+    return {kind, id.slot, id.generation, static_cast<std::uint32_t>(index), id.world};
+  };
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return made(PointRef::Kind::kRope, object.rope);
+    case SceneObject::Kind::kCloth:
+      return made(PointRef::Kind::kCloth, object.cloth);
+    case SceneObject::Kind::kSolid:
+      return made(PointRef::Kind::kSolid, object.solid);
+    case SceneObject::Kind::kParticles:
+      return made(PointRef::Kind::kParticles, object.particles);
     default:
       return {};
   }

@@ -1,0 +1,204 @@
+#include "hooke/load/raise.h"
+
+#include "hooke/load/rest.h"
+#include "hooke/text_of.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+// All are shares of the weight of what moves and of the load.
+constexpr double kLoosestResidual = 1e-4;
+constexpr double kTightestResidual = 3e-6;
+constexpr double kResidualOfStep = 0.02;  ///< Of a step of the load.
+constexpr double kDriftOfExtent = 1e-7;   ///< Of the extent, in a second.
+constexpr double kFinest = 1e-7;          ///< Share of the weight below which steps are not halved.
+constexpr double kMostGrowth = 2;         ///< A step of the load is at most twice the one before.
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kStepAfterBreak = 0.01;  ///< Of the load at which something broke.
+
+/// Raises the load. It belongs to one call of raise_load.
+class Raise {
+ public:
+  Raise(Simulation& simulation, Movers& movers, const Push& push, const RaiseOptions& options)
+      : simulation_(simulation),
+        movers_(movers),
+        push_(push),
+        options_(options),
+        relaxation_(simulation, movers, push),
+        extent_(movers.extent(simulation)) {
+    raised_.members = find_members(simulation);
+    const auto gravity = static_cast<double>(length(simulation.world().desc().gravity));
+    raised_.weight = movers.mass() * gravity;
+  }
+
+  Result<Raised> run() {
+    if (auto rest = settle(); !rest) return rest.error();
+    double load = 0;
+    double step = options_.first;
+    double ceiling = kNone;  // The least load that was too much since the last break.
+    while (!raised_.collapse && load < options_.most) {
+      double next = std::min(load + step, options_.most);
+      if (ceiling < kNone) next = ceiling - load > finest(ceiling) ? 0.5 * (load + ceiling) : ceiling;
+      const std::size_t breaks = raised_.breaks.size();
+      auto reached = attempt(load, next);
+      if (!reached) return reached.error();
+      if (raised_.breaks.size() > breaks) {
+        if (options_.until_break) break;
+        ceiling = kNone;
+        step = std::max(kStepAfterBreak * next, finest(next));
+      } else if (reached.value()) {
+        step = std::min(kMostGrowth * (next - load), std::max(next, options_.first));
+      }
+      // A load that was too much as one step of many may be carried when it is come near to.
+      if (reached.value() && next >= ceiling) ceiling = kNone;
+      if (reached.value()) load = next;
+      if (!reached.value() && !raised_.collapse) ceiling = next;
+    }
+    return std::move(raised_);
+  }
+
+ private:
+  /// Width of an interval of loads that needs no halving [N].
+  [[nodiscard]] double finest(double load) const {
+    return std::max(options_.tolerance * load, kFinest * (raised_.weight + load));
+  }
+
+  [[nodiscard]] RestRules rules(double load, double step) const {
+    const double scale = raised_.weight + load;
+    const auto dt = static_cast<double>(simulation_.scene().dt);
+    return {
+        .residual = std::clamp(kResidualOfStep * step, kTightestResidual * scale, kLoosestResidual * scale),
+        .speed = 1e-3 * std::max(extent_, 1e-3),
+        .drift = kDriftOfExtent * extent_,
+        .way = options_.way,
+        .steps = static_cast<std::uint64_t>(std::max(1.0, options_.patience / dt)),
+        .ends_at_break = true};
+  }
+
+  void record(double load, const RestOutcome& outcome) {
+    Equilibrium one = {.load = load,
+                       .way = push_.place(simulation_.world()) - start_,
+                       .residual = outcome.residual,
+                       .steps = outcome.steps,
+                       .forces = member_forces(simulation_, raised_.members)};
+    raised_.largest_residual = std::max(raised_.largest_residual, one.residual);
+    raised_.equilibria.push_back(std::move(one));
+    held_ = simulation_.snapshot();
+    loose_ = movers_.loose();
+  }
+
+  void note(double held, double load, RestOutcome& outcome) {
+    for (LoadBreak& one : outcome.breaks) {
+      one.held = held;
+      one.load = load;
+      raised_.breaks.push_back(std::move(one));
+    }
+    for (std::string& name : outcome.fell_off) raised_.fell_off.push_back(std::move(name));
+  }
+
+  void collapse(double held, double load, const RestOutcome& outcome) {
+    const bool ran = outcome.end == RestOutcome::End::kMoved;
+    raised_.collapse = {.ran = ran,
+                        .held = held,
+                        .load = load,
+                        .why = ran ? text_of("the loaded place moved more than %.3g m", options_.way)
+                                   : text_of("there was no rest in %.3g s", options_.patience),
+                        .moves = movers_.moves(simulation_.world())};
+  }
+
+  /// Finds the equilibrium without load.
+  Result<void> settle() {
+    RestRules own = rules(0, 0);
+    own.residual = kTightestResidual * raised_.weight;
+    own.way = 0;
+    own.ends_at_break = false;
+    start_ = push_.place(simulation_.world());
+    auto outcome = relaxation_.run(0, own);
+    if (!outcome) return outcome.error();
+    raised_.steps += outcome.value().steps;
+    note(0, 0, outcome.value());
+    raised_.settling = movers_.moves(simulation_.world());
+    start_ = push_.place(simulation_.world());
+    if (outcome.value().end == RestOutcome::End::kRest) {
+      record(0, outcome.value());
+    } else {
+      collapse(0, 0, outcome.value());
+    }
+    return {};
+  }
+
+  /// Tries to go from one load to the next. Returns whether that is done, or must be tried with less.
+  Result<bool> attempt(double load, double next) {
+    const RestRules with = rules(next, next - load);
+    auto outcome = relaxation_.run(next, with);
+    if (!outcome) return outcome.error();
+    raised_.steps += outcome.value().steps;
+    const bool narrow = next - load <= finest(next) * (1 + 1e-9);
+    if (outcome.value().end == RestOutcome::End::kRest) {
+      note(load, next, outcome.value());
+      record(next, outcome.value());
+      return true;
+    }
+    if (!narrow) {
+      if (auto restored = simulation_.restore(held_); !restored) return restored.error();
+      movers_.set_loose(loose_);
+      return false;
+    }
+    if (outcome.value().end == RestOutcome::End::kBroke) return pass_break(load, next, outcome.value());
+    note(load, next, outcome.value());
+    collapse(load, next, outcome.value());
+    return false;
+  }
+
+  /// Goes on from where something has broken, under the same load.
+  Result<bool> pass_break(double load, double next, RestOutcome& broken) {
+    note(load, next, broken);
+    if (options_.until_break) return true;
+    RestRules with = rules(next, next - load);
+    with.ends_at_break = false;
+    auto outcome = relaxation_.run(next, with);
+    if (!outcome) return outcome.error();
+    raised_.steps += outcome.value().steps;
+    note(load, next, outcome.value());
+    if (outcome.value().end == RestOutcome::End::kRest) {
+      record(next, outcome.value());
+      return true;
+    }
+    collapse(load, next, outcome.value());
+    return false;
+  }
+
+  Simulation& simulation_;
+  Movers& movers_;
+  const Push& push_;
+  RaiseOptions options_;
+  Relaxation relaxation_;
+  double extent_ = 0;
+  DVec3 start_ = {};
+  SimulationSnapshot held_ = {};  ///< The last equilibrium.
+  std::vector<bool> loose_ = {};  ///< What was loose then.
+  Raised raised_ = {};
+};
+
+}  // namespace
+
+const LoadBreak* first_break(const Raised& raised) {
+  for (const LoadBreak& one : raised.breaks) {
+    if (one.load > 0) return &one;
+  }
+  return nullptr;
+}
+
+Result<Raised> raise_load(Simulation& simulation, Movers& movers, const Push& push,
+                          const RaiseOptions& options) {
+  return Raise(simulation, movers, push, options).run();
+}
+
+}  // namespace hooke::app

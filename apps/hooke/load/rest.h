@@ -1,0 +1,52 @@
+#pragma once
+
+#include "hooke/load/movers.h"
+#include "hooke/load/push.h"
+#include "hooke/load/raise.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace hooke::app {
+
+/// When an attempt to come to rest ends.
+struct RestRules {
+  double residual = 0;      ///< Unbalanced force that counts as rest [N].
+  double speed = 0;         ///< Speed that counts as rest [m/s].
+  double drift = 0;         ///< What moves less in a second is at rest, too, whatever its jitter [m].
+  double way = 0;           ///< A loaded place that moves farther has collapsed [m]; 0 for any way.
+  std::uint64_t steps = 0;  ///< Most steps.
+  bool ends_at_break = true;
+};
+
+/// How an attempt ended.
+struct RestOutcome {
+  enum class End { kRest, kBroke, kMoved, kNever };
+  End end = End::kNever;
+  double residual = 0;      ///< In the last step [N].
+  std::uint64_t steps = 0;  ///< Steps made.
+  std::vector<LoadBreak> breaks = {};
+  std::vector<std::string> fell_off = {};
+};
+
+/// Brings simulations to rest by dynamic relaxation with kinetic damping (Cundall 1976; Papadrakakis 1981;
+/// Barnes 1999): it runs freely, and takes all speed away when the kinetic energy has passed a peak. No
+/// damping force is left in the equilibrium, and one way past a peak is all it overshoots.
+class Relaxation {
+ public:
+  Relaxation(Simulation& simulation, Movers& movers, const Push& push);
+
+  /// Steps under `load` [N] until an end. The Error says that the world could not step.
+  [[nodiscard]] Result<RestOutcome> run(double load, const RestRules& rules);
+
+ private:
+  [[nodiscard]] std::vector<LoadBreak> take_breaks();
+
+  Simulation* simulation_;
+  Movers* movers_;
+  const Push* push_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> hooks_;  ///< Names by slot and generation.
+};
+
+}  // namespace hooke::app

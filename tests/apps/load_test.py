@@ -1,0 +1,204 @@
+"""Runs `hooke load` as a user does, against statics: load_test.py PROGRAM PROJECT_FOLDER."""
+
+import csv
+import json
+import pathlib
+import sys
+import unittest
+
+import cli_test
+from cli_test import Program
+
+G = 9.81
+
+
+def block(half, friction, mass=100):
+    """A block on the ground."""
+    return {"version": 1, "bodies": [
+        {"name": "ground", "shape": {"half_space": {}}, "friction": friction},
+        {"name": "block", "kind": "dynamic", "mass": mass, "friction": friction, "position": [0, half[1], 0],
+         "shape": {"box": {"half_extents": half}}}]}
+
+
+def hanging_bar(**hook):
+    """A bar of 10 kg that hangs straight down from a hinge."""
+    return {"version": 1,
+            "bodies": [{"name": "bar", "kind": "dynamic", "mass": 10, "position": [0, -0.5, 0],
+                        "shape": {"box": {"half_extents": [0.02, 0.5, 0.02]}}}],
+            "hooks": [{"name": "pin", "kind": "hinge", "axis": [0, 0, 1], "b": "bar", "anchor": [0, 0, 0]} | hook]}
+
+
+class Load(Program):
+    def load(self, content, *words, code=0):
+        """Returns the report and what was said on stderr."""
+        out, errors = self.hooke("load", self.scene(content), *words, "--json", "-", code=code)
+        return json.loads(out), errors
+
+    def assert_between(self, found, exact, tolerance=1e-3):
+        """The interval is narrow, and its middle is right."""
+        self.assertLessEqual(found["load"] - found["held"], 1.001 * tolerance * found["load"])
+        self.assertAlmostEqual(0.5 * (found["held"] + found["load"]) / exact, 1, delta=tolerance)
+
+
+class Limits(Load):
+    def test_a_block_tips_where_the_moment_of_the_force_is_that_of_its_weight(self):
+        report, _ = self.load(block([0.5, 1, 0.5], 1), "--on", "block", "--at", "0,2,0", "--direction", "1,0,0")
+        self.assert_between(report["collapse"], 100 * G * 0.5 / 2)
+        self.assertEqual(report["collapse"]["kind"], "collapse")
+        self.assertEqual(report["collapse"]["moves"][0]["object"], "block")
+        self.assertGreater(report["collapse"]["moves"][0]["way"][0], 0.3)
+
+    def test_a_block_slides_where_the_force_is_that_of_friction(self):
+        report, _ = self.load(block([0.5, 0.5, 0.5], 0.3), "--on", "block", "--direction", "1,0,0")
+        self.assert_between(report["collapse"], 0.3 * 100 * G)
+
+    def test_a_hinge_breaks_where_load_and_weight_are_its_strength(self):
+        report, _ = self.load(hanging_bar(break_force=500), "--on", "bar", "--at", "0,-1,0")
+        (broken,) = report["breaks"]
+        self.assertEqual(broken["object"], "pin")
+        self.assert_between(broken, 500 - 10 * G)
+        self.assertAlmostEqual(broken["force"], 500, delta=1)
+        self.assertEqual(report["collapse"]["held"], broken["held"])
+
+    def test_a_finer_tolerance_narrows_the_interval(self):
+        report, _ = self.load(hanging_bar(break_force=500), "--on", "bar", "--tolerance", "1e-4", "--until", "break")
+        self.assert_between(report["breaks"][0], 500 - 10 * G, 1e-4)
+        self.assertIsNone(report["collapse"])
+
+    def test_a_stretchy_rope_is_not_broken_by_a_step_of_the_load(self):
+        # Loaded at once, it would swing to twice the extension and break at half the load.
+        rope = {"version": 1, "ropes": [{"name": "rope", "hook_point": [0, 3, 0], "direction": [0, -1, 0],
+                                         "length_at_rest": 2, "masses": 11, "total_mass": 1, "stiffness": 5000,
+                                         "strength": 800, "loads": [{"point": "last", "mass": 20}]}]}
+        report, _ = self.load(rope, "--on", "rope:last")
+        self.assert_between(report["breaks"][0], 800 - (20 + 0.95) * G)
+        self.assertTrue(report["breaks"][0]["what"].startswith("rope, segment 0"))
+        at_rest = [one for one in report["equilibria"] if one["load"] <= report["breaks"][0]["held"]]
+        for one in at_rest:
+            self.assertAlmostEqual(-one["way"][1] * 5000, one["load"], delta=1e-3 * (one["load"] + 210))
+            self.assertLess(one["residual"], 1e-4 * (210 + one["load"]) * 1.01)
+
+
+class Reports(Load):
+    def test_the_reserve_is_told_and_counts(self):
+        words = ("--on", "bar", "--nominal")
+        report, _ = self.load(hanging_bar(break_force=500), *words, 200)
+        self.assertAlmostEqual(report["reserve"], (500 - 10 * G) / 200, delta=2e-3)
+        report, _ = self.load(hanging_bar(break_force=500), *words, 450, code=1)
+        self.assertLess(report["reserve"], 1)
+        report, _ = self.load(hanging_bar(), *words, 450, "--until", 900)
+        self.assertEqual((report["reserve"], report["breaks"], report["collapse"]), (2, [], None))
+
+    def test_members_have_their_force_with_its_sign(self):
+        report, _ = self.load(hanging_bar(break_force=5000, break_torque=100), "--on", "bar", "--until", 300)
+        joint = report["equilibria"][-1]["members"][0]
+        self.assertEqual((joint["name"], joint["kind"], joint["strength"]), ("pin", "joint", 5000))
+        self.assertAlmostEqual(joint["force"], 300 + 10 * G, delta=0.05)
+        self.assertAlmostEqual(joint["utilization"], joint["force"] / 5000, places=6)
+        report, _ = self.load(strut(), "--on", "top", "--until", 1000)
+        self.assertAlmostEqual(report["equilibria"][-1]["members"][0]["force"], -1000 - G, delta=0.5)
+        report, _ = self.load(strut(), "--on", "top", "--until", 1000, "--direction", "0,1,0")
+        self.assertAlmostEqual(report["equilibria"][-1]["members"][0]["force"], 1000 - G, delta=0.5)
+
+    def test_the_table_has_a_line_for_each_equilibrium(self):
+        name = self.scene(hanging_bar(break_force=500))
+        out, _ = self.hooke("load", name, "--on", "bar", "--csv", "table.csv", "--json", "report.json")
+        report = json.loads((self.folder / "report.json").read_text())
+        rows = list(csv.DictReader((self.folder / "table.csv").read_text().splitlines()))
+        self.assertEqual([float(row["load"]) for row in rows], [one["load"] for one in report["equilibria"]])
+        self.assertEqual([float(row["pin"]) for row in rows],
+                         [one["members"][0]["force"] for one in report["equilibria"]])
+        for word in ("without load at rest", "first break  'pin' (hook) at 40", "collapse", "found by"):
+            self.assertIn(word, out)
+
+    def test_the_same_words_give_the_same_report(self):
+        words = ("--on", "bar", "--direction", "1,-1,0")
+        report, _ = self.load(hanging_bar(break_force=500), *words)
+        self.assertEqual(self.load(hanging_bar(break_force=500), *words, "--workers", 2)[0], report)
+
+    def test_a_plot_is_drawn(self):
+        name = self.scene(hanging_bar(break_force=500))
+        self.hooke("load", name, "--on", "bar", "--plot", "plot.svg")
+        self.assertIn("pin", (self.folder / "plot.svg").read_text())
+        self.assertIn("--plot: 'x.gif' ends neither", self.hooke("load", name, "--on", "bar", "--plot", "x.gif",
+                                                                 code=2)[1])
+
+
+class Mechanisms(Load):
+    def test_what_nothing_holds_is_named_with_its_motion(self):
+        falling = block([0.5, 0.5, 0.5], 1)
+        del falling["bodies"][0]
+        out, _ = self.hooke("load", self.scene(falling), "--on", "block", "--patience", 2, code=1)
+        self.assertRegex(out, r"mechanism .*no equilibrium without load")
+        self.assertRegex(out, r"'block' by 1\d\.\d m along \(0.00, -1.00, 0.00\)")
+        report, _ = self.load(falling, "--on", "block", "--patience", 2, code=1)
+        self.assertEqual((report["equilibria"], report["collapse"]["load"]), ([], 0))
+
+    def test_what_swings_comes_to_rest_without_friction(self):
+        swinging = hanging_bar()
+        swinging["bodies"][0] |= {"position": [0.5, 0, 0], "shape": {"box": {"half_extents": [0.5, 0.02, 0.02]}}}
+        report, _ = self.load(swinging, "--on", "bar", "--until", 10)
+        self.assertAlmostEqual(report["settling"][0]["way"][1], -0.5, delta=1e-3)
+        self.assertAlmostEqual(report["equilibria"][0]["members"][0]["force"], 10 * G, delta=0.01)
+
+    def test_what_falls_off_does_not_end_the_search(self):
+        scene = hanging_bar(break_force=500)
+        scene["bodies"].append({"name": "lamp", "kind": "dynamic", "mass": 1, "position": [0, -1.2, 0],
+                                "collides": False, "shape": {"sphere": {"radius": 0.1}}})
+        scene["hooks"].append({"name": "thread", "kind": "ball", "a": "bar", "b": "lamp", "anchor": [0, -1, 0],
+                               "break_force": 50})
+        # Half of the load on each: the lamp goes at 2 (50 - 9.81) N, the bar when it has lost the lamp.
+        report, _ = self.load(scene, "--on", "bar,lamp")
+        self.assertEqual(report["breaks"][0]["object"], "thread")
+        self.assert_between(report["breaks"][0], 2 * (50 - G))
+
+
+class BadWords(Load):
+    def assert_refused(self, content, words, pattern):
+        self.assert_one_line(self.hooke("load", self.scene(content), *words, code=2)[1], pattern)
+
+    def test_names_that_cannot_be_loaded(self):
+        scene = block([0.5, 0.5, 0.5], 1)
+        self.assert_refused(scene, ("--on", "box"), "^--on box: there is no object.*can be loaded: 'block'")
+        self.assert_refused(scene, ("--on", "ground"), "^--on ground: it cannot move.*'block'")
+        self.assert_refused(scene, ("--on", "block:3"), "--at says a place")
+        rope = {"version": 1, "ropes": [{"name": "rope", "masses": 4}]}
+        self.assert_refused(rope, ("--on", "rope:9"), "its points are 0 to 3")
+        self.assert_refused(rope, ("--on", "rope:0"), "pinned")
+
+    def test_words_that_mean_no_load(self):
+        scene = block([0.5, 0.5, 0.5], 1)
+        on = ("--on", "block")
+        self.assert_refused(scene, (*on, "--direction", "0,0,0"), "^--direction: has no length")
+        self.assert_refused(scene, (*on, "--until", "noon"), "^--until: 'noon' is neither")
+        self.assert_refused(scene, (*on, "--until", "-5"), "^--until: ")
+        self.assert_refused(scene, ("--on", "block,block", "--at", "0,0,0"), "^--at: ")
+        self.assert_refused(scene, (*on, "--nominal", 0), "--nominal")
+        weightless = scene | {"world": {"gravity": [0, 0, 0]}}
+        self.assert_refused(weightless, on, "^--first: is needed")
+
+    def test_a_search_for_a_break_where_nothing_can_break(self):
+        self.assert_refused(block([0.5, 0.5, 0.5], 1), ("--on", "block", "--until", "break"),
+                            "nothing in the scene can break.*break_force")
+
+    def test_a_timeline_is_left_out_and_that_is_said(self):
+        scene = hanging_bar(break_force=500)
+        scene["timeline"] = [{"at_step": 6, "remove": "bar"}]
+        report, errors = self.load(scene, "--on", "bar", "--until", 100)
+        self.assertIn("timeline is left out", errors)
+        self.assertEqual(report["equilibria"][-1]["load"], 100)
+
+
+def strut():
+    """A rod that stands on the ground and keeps a mass of 1 kg up, which can only move up and down."""
+    return {"version": 1,
+            "bodies": [{"name": "top", "kind": "dynamic", "mass": 1, "position": [0, 1, 0],
+                        "shape": {"sphere": {"radius": 0.05}}}],
+            "hooks": [{"name": "rod", "kind": "distance", "b": "top", "anchor": [0, 0, 0], "anchor_b": [0, 1, 0]},
+                      {"name": "guide", "kind": "slider", "axis": [0, 1, 0], "b": "top", "anchor": [0, 1, 0]}]}
+
+
+if __name__ == "__main__":
+    cli_test.PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+    cli_test.PROJECT = pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
