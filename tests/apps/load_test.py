@@ -7,6 +7,7 @@ import sys
 import unittest
 
 import cli_test
+import trusses
 from cli_test import Program
 
 G = 9.81
@@ -77,6 +78,125 @@ class Limits(Load):
         for one in at_rest:
             self.assertAlmostEqual(-one["way"][1] * 5000, one["load"], delta=1e-3 * (one["load"] + 210))
             self.assertLess(one["residual"], 1e-4 * (210 + one["load"]) * 1.01)
+
+
+class Trusses(Load):
+    """Bar forces by the method of joints, and the load of limit analysis."""
+
+    def assert_forces(self, truss, report, loads, at=-1):
+        exact = truss.forces(loads)
+        largest = max(map(abs, exact.values()))
+        found = {member["name"]: member["force"] for member in report["equilibria"][at]["members"]}
+        for bar, force in exact.items():
+            self.assertAlmostEqual(found["_".join(bar)], force, delta=1e-5 * largest, msg=str(bar))
+
+    def check_rods(self, truss, on, load):
+        report, errors = self.load(truss.of_rods() | {"world": {"gravity": [0, 0, 0]}}, "--on", ",".join(on),
+                                   "--first", 10, "--until", load)
+        self.assertEqual(errors, "")
+        self.assert_forces(truss, report, {name: (0, -load / len(on)) for name in on})
+        self.assertLess(report["largest_residual"], 1e-4 * load)
+
+    def test_a_pratt_truss_of_rods(self):
+        self.check_rods(trusses.pratt(), ["b1", "b2", "b3"], 60000)
+
+    def test_a_cantilever_of_rods(self):
+        self.check_rods(trusses.bracket(), ["t3"], 5000)
+
+    def test_a_fink_roof_of_rods(self):
+        self.check_rods(trusses.fink(), ["m", "top", "n"], 9000)
+
+    def test_a_warren_truss_of_hinged_bars_with_weight(self):
+        truss = trusses.warren()
+        report, _ = self.load(truss.of_bars(), "--on", "b2", "--until", 1000 * G)
+        weights = truss.weights(G, 1, 0.1)
+        self.assert_forces(truss, report, weights, at=0)
+        loads = weights | {"b2": (0, weights["b2"][1] - 1000 * G)}
+        self.assert_forces(truss, report, loads)
+
+    def test_the_truss_of_15_bars_fails_at_the_load_of_limit_analysis(self):
+        # It is statically determinate: it lasts as long as its bars do. Hinges of 20 kN carry half the weight
+        # of a bar across it, too.
+        truss = trusses.warren()
+        own = truss.forces(truss.weights(G, 1, 0.1))
+        each = truss.forces({"b2": (0, -1)})
+        limit = min((20000 - abs(own[bar])) / abs(each[bar]) for bar in truss.bars)
+        scene = truss.of_bars(break_force=20000)
+        for more in ({}, {"dt": 1 / 120}, {"world": {"substeps": 16}}):
+            report, _ = self.load(scene | more, "--on", "b2")
+            self.assert_between(report["collapse"], limit)
+            self.assertTrue(report["breaks"][0]["object"].startswith("t1_t2@"))
+            self.assertEqual(report["collapse"]["kind"], "collapse")
+
+    def test_a_truss_without_diagonals_is_a_mechanism(self):
+        scene = trusses.pratt(panels=4).of_rods()
+        report, _ = self.load(scene, "--on", "b2", "--until", 1)
+        self.assertFalse(report["mechanism"])
+        scene["hooks"] = [hook for hook in scene["hooks"] if hook["name"] not in ("t1_b2", "t3_b2")]
+        report, _ = self.load(scene, "--on", "b2", "--until", 1)
+        self.assertTrue(report["mechanism"])
+        self.assertRegex(report["settling"][0]["object"], "t[123]")
+
+
+class Ropes(Load):
+    def test_a_plate_on_three_ropes(self):
+        # Vertical ropes at three corners: moments about the lines through two of them.
+        mass, at = 60, (0.2, -0.1)
+        corners = [(-1, -1), (1, -1), (0, 1)]
+        bodies = [{"name": "plate", "kind": "dynamic", "mass": mass, "position": [0, 0, 0],
+                   "shape": {"box": {"half_extents": [1.2, 0.02, 1.2]}}}]
+        ropes, hooks = [], []
+        for i, (x, z) in enumerate(corners):
+            ropes.append({"name": f"rope{i}", "points": [[x, 2 - 0.1 * k, z] for k in range(21)],
+                          "total_mass": 0.001, "strength": 2000})
+            hooks.append({"name": f"hook{i}", "a": "plate", "b": f"rope{i}", "b_point": "last",
+                          "anchor": [x, 0, z]})
+        scene = {"version": 1, "bodies": bodies, "ropes": ropes, "hooks": hooks}
+        # Shares of a force at (x, z): those of the corners sum to 1 and have their mean there.
+        def shares(x, z):
+            return trusses.solve([[1, 1, 1], [c[0] for c in corners], [c[1] for c in corners]], [1, x, z])
+        own = [mass * G * share for share in shares(0, 0)]
+        parts = shares(*at)
+        exact = min((2000 - weight) / part for weight, part in zip(own, parts))
+        report, _ = self.load(scene, "--on", "plate", "--at", f"{at[0]},0.02,{at[1]}")
+        self.assert_between(report["breaks"][0], exact)
+        for equilibrium in report["equilibria"][:-1]:
+            tensions = [one["force"] for one in equilibrium["members"] if one["kind"] == "rope"]
+            for tension, weight, part in zip(tensions, own, parts):
+                wanted = weight + part * equilibrium["load"]
+                self.assertAlmostEqual(tension / wanted, 1, delta=1e-3)
+
+
+class Stacks(Load):
+    def overhang(self, share):
+        """Four blocks, each beyond the one below by `share` of what statics allows: L / 2n for the n-th from top."""
+        bodies = [{"name": "table", "position": [-1, -0.5, 0], "shape": {"box": {"half_extents": [1, 0.5, 1]}}}]
+        x = -0.5  # center of a block of 1 m whose right side is at the table's edge
+        for level in range(4):
+            x += share / (2 * (4 - level))
+            bodies.append({"name": f"block{level}", "kind": "dynamic", "mass": 2, "position": [x, 0.05 + 0.1 * level, 0],
+                           "shape": {"box": {"half_extents": [0.5, 0.05, 0.2]}}})
+        return {"version": 1, "bodies": bodies}
+
+    def test_four_blocks_hang_over_as_far_as_their_centers_allow(self):
+        report, _ = self.load(self.overhang(0.995), "--on", "block3", "--until", 0.001)
+        self.assertLess(max(abs(one["way"][1]) for one in report["settling"]), 1e-4)
+        # The uppermost falls past the table, and finds no rest.
+        report, _ = self.load(self.overhang(1.005), "--on", "block3", "--until", 0.001, code=1)
+        self.assertTrue(report["mechanism"])
+        self.assertEqual(report["settling"][0]["object"], "block3")
+
+    def test_a_load_on_the_top_block_tips_them(self):
+        # Centers of blocks are share / 2n apart, n from the top. So that of the upper n is share / 2 beyond the
+        # center of the block below, and (1 - share) / 2 behind its edge. The load is beyond that edge by:
+        share = 0.9
+        limits = []
+        for count in range(1, 5):
+            beyond = share * sum(1 / (2 * i) for i in range(1, count + 1)) - 0.5
+            if beyond > 0:
+                limits.append(2 * count * G * 0.5 * (1 - share) / beyond)
+        report, _ = self.load(self.overhang(share), "--on", "block3")
+        self.assert_between(report["collapse"], min(limits))
 
 
 class Reports(Load):

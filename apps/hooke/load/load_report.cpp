@@ -18,8 +18,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostRows = 40;   ///< Members in the table for people; files have all.
 constexpr std::size_t kMostMovers = 5;  ///< Moves in the text for people.
 constexpr std::size_t kMostCurves = 8;  ///< Members in the plot.
-constexpr double kLongSettling =
-    0.05;  ///< Share of the extent that is said, as the way to rest without load.
 
 Json json_of_vector(DVec3 v) {
   return {v.x, v.y, v.z};
@@ -150,8 +148,9 @@ std::string load_summary(const Raised& raised, const LoadTitle& title) {
   const Equilibrium& own = raised.equilibria.front();
   text += text_of("without load at rest after %llu steps, %.2g N unbalanced of %.6g N weight\n",
                   static_cast<unsigned long long>(own.steps), own.residual, raised.weight);
-  if (!raised.settling.empty() && length(raised.settling[0].way) > kLongSettling) {
-    text += "  on the way to rest it moved:\n" + moves_text(raised.settling);
+  if (raised.is_mechanism) {
+    text +=
+        "mechanism    it moved far until it found rest under its own weight:\n" + moves_text(raised.settling);
   }
   text += member_table(raised);
   text += breaks_text(raised);
@@ -200,6 +199,7 @@ std::string load_json(const Raised& raised, const LoadTitle& title) {
                  {"steps", raised.steps},
                  {"tolerance", title.tolerance},
                  {"largest_residual", raised.largest_residual},
+                 {"mechanism", raised.is_mechanism},
                  {"settling", json_of_moves(raised.settling)}};
   Json& equilibria = report["equilibria"] = Json::array();
   for (const Equilibrium& one : raised.equilibria) {

@@ -126,7 +126,10 @@ class Raise {
     note(0, 0, outcome.value());
     raised_.settling = movers_.moves(simulation_.world());
     start_ = push_.place(simulation_.world());
-    if (outcome.value().end == RestOutcome::End::kRest) {
+    const bool rests = outcome.value().end == RestOutcome::End::kRest;
+    const std::vector<Move>& moves = raised_.settling;
+    raised_.is_mechanism = !rests || (!moves.empty() && length(moves[0].way) > options_.way);
+    if (rests) {
       record(0, outcome.value());
     } else {
       collapse(0, 0, outcome.value());

@@ -53,6 +53,9 @@ struct Raised {
   std::vector<Member> members = {};
   std::vector<Equilibrium> equilibria = {};  ///< The first is that without load.
   std::vector<Move> settling = {};           ///< Moves until there was rest without load.
+  /// Whether there was no rest without load, or only after something had moved by more than
+  /// RaiseOptions::way.
+  bool is_mechanism = false;
   std::vector<LoadBreak> breaks = {};
   std::vector<std::string> fell_off = {};  ///< Names of what came off and fell.
   std::optional<Collapse> collapse = {};   ///< With a load of 0 if there is no equilibrium without load.
