@@ -29,6 +29,13 @@ def hanging_bar(**hook):
             "hooks": [{"name": "pin", "kind": "hinge", "axis": [0, 0, 1], "b": "bar", "anchor": [0, 0, 0]} | hook]}
 
 
+def stretchy_rope(**more):
+    """A rope of 1 kg with 20 kg at its end: its uppermost segment carries 20.95 kg."""
+    return {"version": 1, "ropes": [{"name": "rope", "hook_point": [0, 3, 0], "direction": [0, -1, 0],
+                                     "length_at_rest": 2, "masses": 11, "total_mass": 1, "stiffness": 5000,
+                                     "loads": [{"point": "last", "mass": 20}]} | more]}
+
+
 class Load(Program):
     def load(self, content, *words, code=0):
         """Returns the report and what was said on stderr."""
@@ -68,16 +75,23 @@ class Limits(Load):
 
     def test_a_stretchy_rope_is_not_broken_by_a_step_of_the_load(self):
         # Loaded at once, it would swing to twice the extension and break at half the load.
-        rope = {"version": 1, "ropes": [{"name": "rope", "hook_point": [0, 3, 0], "direction": [0, -1, 0],
-                                         "length_at_rest": 2, "masses": 11, "total_mass": 1, "stiffness": 5000,
-                                         "strength": 800, "loads": [{"point": "last", "mass": 20}]}]}
-        report, _ = self.load(rope, "--on", "rope:last")
+        report, _ = self.load(stretchy_rope(strength=800), "--on", "rope:last")
         self.assert_between(report["breaks"][0], 800 - (20 + 0.95) * G)
         self.assertTrue(report["breaks"][0]["what"].startswith("rope, segment 0"))
         at_rest = [one for one in report["equilibria"] if one["load"] <= report["breaks"][0]["held"]]
         for one in at_rest:
             self.assertAlmostEqual(-one["way"][1] * 5000, one["load"], delta=1e-3 * (one["load"] + 210))
             self.assertLess(one["residual"], 1e-4 * (210 + one["load"]) * 1.01)
+
+    def test_weight_that_would_snap_a_rope_if_it_came_at_once_is_raised_slowly(self):
+        report, _ = self.load(stretchy_rope(strength=300), "--on", "rope:last")
+        self.assert_between(report["breaks"][0], 300 - 20.95 * G)
+        self.assertFalse(report["mechanism"])
+
+    def test_weight_that_is_too_much_is_told_by_its_share(self):
+        report, _ = self.load(stretchy_rope(strength=100), "--on", "rope:last", code=1)
+        self.assertEqual((report["breaks"][0]["load"], report["equilibria"]), (0, []))
+        self.assertAlmostEqual(report["breaks"][0]["weight"], 100 / (20.95 * G), delta=1e-3)
 
 
 class Trusses(Load):

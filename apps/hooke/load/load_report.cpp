@@ -23,9 +23,8 @@ Json json_of_vector(DVec3 v) {
   return {v.x, v.y, v.z};
 }
 
-/// Width of the interval from `held` to `load` as text: the middle, and half of it.
+/// Interval from `held` to `load` as text.
 std::string interval_text(double held, double load) {
-  if (!(load > 0)) return "under its own weight, before any load";
   return text_of("at %.6g N (held %.6g, not %.6g)", 0.5 * (held + load), held, load);
 }
 
@@ -87,7 +86,9 @@ std::string breaks_text(const Raised& raised) {
     } else {
       text += &one == first_break(raised) ? "first break  " : "then         ";
     }
-    text += "'" + one.object + "' (" + one.what + ") " + interval_text(one.held, one.load);
+    text += "'" + one.object + "' (" + one.what + ") " +
+            (one.load > 0 ? interval_text(one.held, one.load)
+                          : text_of("without load, under %.4g of its weight", one.share));
     text += tore ? text_of(", strained by %.3g %%\n", 100 * one.force)
                  : text_of(", where it needed %.6g N\n", one.force);
   }
@@ -141,9 +142,11 @@ std::string load_summary(const Raised& raised, const LoadTitle& title) {
   std::string text = text_of("%s: load on %s along (%.3g, %.3g, %.3g)\n", title.scene.c_str(),
                              title.on.c_str(), title.direction.x, title.direction.y, title.direction.z);
   if (raised.equilibria.empty()) {
-    text += "mechanism    no equilibrium without load: " + raised.collapse->why + "; what moved:\n";
-    return text + moves_text(raised.collapse->moves) +
-           "  hold it by hooks to the world or to static bodies, or put ground under it\n";
+    text += breaks_text(raised) + "mechanism    no equilibrium without load: " + raised.collapse->why +
+            "; what moved:\n" + moves_text(raised.collapse->moves);
+    return text + (raised.breaks.empty()
+                       ? "  hold it by hooks to the world or to static bodies, or put ground under it\n"
+                       : "  it does not carry its own weight: it needs more strength, or less mass\n");
   }
   const Equilibrium& own = raised.equilibria.front();
   text += text_of("without load at rest after %llu steps, %.2g N unbalanced of %.6g N weight\n",
@@ -215,7 +218,8 @@ std::string load_json(const Raised& raised, const LoadTitle& title) {
                       {"what", one.what},
                       {one.what.starts_with("cloth") ? "strain" : "force", one.force},
                       {"held", one.held},
-                      {"load", one.load}});
+                      {"load", one.load},
+                      {"weight", one.share}});
   }
   report["fell_off"] = raised.fell_off;
   report["collapse"] = nullptr;

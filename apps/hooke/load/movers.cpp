@@ -50,7 +50,9 @@ double body_radius(const SceneObject& object) {
 void add(Unrest& unrest, const Mover& mover, double mass, double kinetic, double dt) {
   if (!(mass > 0)) return;
   unrest.kinetic += kinetic;
-  unrest.residual = std::max(unrest.residual, std::sqrt(2 * mass * kinetic) / dt);
+  const double force = std::sqrt(2 * mass * kinetic) / dt;
+  unrest.residual = std::max(unrest.residual, force);
+  unrest.sum += force;
   const double speed = std::sqrt(2 * kinetic / mass);
   if (!(speed > unrest.speed)) return;
   unrest.speed = speed;

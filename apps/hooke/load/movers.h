@@ -22,6 +22,7 @@ struct Unrest {
   /// Largest sqrt(2 m E) / dt of any body or point, m being its mass and E its kinetic energy: the force that
   /// would stop it within a step [N]. A step from rest makes it the force that is not balanced.
   double residual = 0;
+  double sum = 0;            ///< Sum of these forces over all bodies and points [N].
   double speed = 0;          ///< Largest speed [m/s].
   double kinetic = 0;        ///< Kinetic energy of all [J].
   std::string fastest = {};  ///< Name of what has that speed.

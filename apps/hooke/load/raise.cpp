@@ -18,6 +18,7 @@ constexpr double kTightestResidual = 3e-6;
 constexpr double kResidualOfStep = 0.02;  ///< Of a step of the load.
 constexpr double kDriftOfExtent = 1e-7;   ///< Of the extent, in a second.
 constexpr double kFinest = 1e-7;          ///< Share of the weight below which steps are not halved.
+constexpr double kFirstShare = 0.25;      ///< Of the weight, where all of it is too much at once.
 constexpr double kMostGrowth = 2;         ///< A step of the load is at most twice the one before.
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -115,26 +116,68 @@ class Raise {
 
   /// Finds the equilibrium without load.
   Result<void> settle() {
-    RestRules own = rules(0, 0);
-    own.residual = kTightestResidual * raised_.weight;
-    own.way = 0;
-    own.ends_at_break = false;
     start_ = push_.place(simulation_.world());
-    auto outcome = relaxation_.run(0, own);
+    Movers start = movers_;
+    start.mark(simulation_.world());
+    auto outcome = settle_at_once();
     if (!outcome) return outcome.error();
-    raised_.steps += outcome.value().steps;
-    note(0, 0, outcome.value());
-    raised_.settling = movers_.moves(simulation_.world());
-    start_ = push_.place(simulation_.world());
     const bool rests = outcome.value().end == RestOutcome::End::kRest;
+    raised_.settling = start.moves(simulation_.world());
     const std::vector<Move>& moves = raised_.settling;
     raised_.is_mechanism = !rests || (!moves.empty() && length(moves[0].way) > options_.way);
+    start_ = push_.place(simulation_.world());
     if (rests) {
       record(0, outcome.value());
     } else {
       collapse(0, 0, outcome.value());
     }
     return {};
+  }
+
+  [[nodiscard]] RestRules rules_without_load(bool ends_at_break) const {
+    RestRules own = rules(0, 0);
+    own.residual = kTightestResidual * raised_.weight;
+    own.way = 0;
+    own.ends_at_break = ends_at_break;
+    return own;
+  }
+
+  Result<RestOutcome> settle_at_once() {
+    const SimulationSnapshot start = simulation_.snapshot();
+    auto outcome = relaxation_.run(0, rules_without_load(true));
+    if (!outcome) return outcome;
+    raised_.steps += outcome.value().steps;
+    if (outcome.value().end != RestOutcome::End::kBroke) return outcome;
+    if (auto restored = simulation_.restore(start); !restored) return restored.error();
+    return settle_by_shares();
+  }
+
+  /// Where weight that comes all at once breaks something, it is raised like a load.
+  Result<RestOutcome> settle_by_shares() {
+    World& world = simulation_.world();
+    const Vec3 gravity = world.desc().gravity;
+    SimulationSnapshot held = simulation_.snapshot();
+    double share = 0;
+    for (double step = kFirstShare;;) {
+      const double next = std::min(share + step, 1.0);
+      const bool narrow = next - share <= options_.tolerance;
+      if (auto set = world.set_gravity(static_cast<Real>(next) * gravity); !set) return set.error();
+      auto outcome = relaxation_.run(0, rules_without_load(!narrow));
+      if (!outcome) return outcome;
+      raised_.steps += outcome.value().steps;
+      if (narrow || outcome.value().end != RestOutcome::End::kBroke) {
+        for (LoadBreak& one : outcome.value().breaks) one.share = next;
+        note(0, 0, outcome.value());
+        // What finds no rest under a part of its weight would find none under all of it.
+        if (next >= 1 || outcome.value().end != RestOutcome::End::kRest) return outcome;
+        held = simulation_.snapshot();
+        share = next;
+        step *= kMostGrowth;
+      } else {
+        if (auto restored = simulation_.restore(held); !restored) return restored.error();
+        step = 0.5 * (next - share);
+      }
+    }
   }
 
   /// Tries to go from one load to the next. Returns whether that is done, or must be tried with less.

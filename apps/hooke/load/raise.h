@@ -35,7 +35,8 @@ struct LoadBreak {
   std::string what;  ///< "hook", "rope, segment 3", "cloth, point 17".
   double force = 0;  ///< What it needed [N]; of a cloth its strain.
   double held = 0;   ///< Largest load that held before [N].
-  double load = 0;   ///< Load at which it broke [N].
+  double load = 0;   ///< Load at which it broke [N]; 0 if its weight did it.
+  double share = 1;  ///< Share of the weight that acted.
 };
 
 /// How the search for an equilibrium ended without one.

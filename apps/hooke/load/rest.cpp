@@ -95,7 +95,7 @@ Result<RestOutcome> Relaxation::run(double load, const RestRules& rules) {
     outcome.residual = unrest.residual;
     if (broke && rules.ends_at_break) return outcome.end = End::kBroke, outcome;
     if (rules.way > 0 && push_->farthest(world, start) > rules.way) return outcome.end = End::kMoved, outcome;
-    const bool at_rest = unrest.residual <= rules.residual && unrest.speed <= rules.speed && !broke;
+    const bool at_rest = unrest.sum <= rules.residual && unrest.speed <= rules.speed && !broke;
     calm = at_rest ? calm + 1 : 0;
     if (calm >= kCalmSteps) return outcome.end = End::kRest, outcome;
     if (peaks.passed(unrest.kinetic)) movers_->stop(world);

@@ -12,7 +12,7 @@ namespace hooke::app {
 
 /// When an attempt to come to rest ends.
 struct RestRules {
-  double residual = 0;      ///< Unbalanced force that counts as rest [N].
+  double residual = 0;      ///< Sum of unbalanced forces that counts as rest [N].
   double speed = 0;         ///< Speed that counts as rest [m/s].
   double drift = 0;         ///< What moves less in a second is at rest, too, whatever its jitter [m].
   double way = 0;           ///< A loaded place that moves farther has collapsed [m]; 0 for any way.
