@@ -23,6 +23,7 @@ from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, at_point, body, box, 
 from rope_scenes import ROPE_SCENES
 from soft_contact_scenes import SOFT_CONTACT_SCENES
 from solid_scenes import SOLID_SCENES
+from structure_scenes import STRUCTURE_SCENES
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 
@@ -815,7 +816,7 @@ SCENES = [
     slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
     convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES,
-    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES, *CLOTH_SCENES, *SOFT_CONTACT_SCENES
+    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES, *CLOTH_SCENES, *SOFT_CONTACT_SCENES, *STRUCTURE_SCENES
 ]
 PAPER = [fig5, fig6, fig7, wall, rollback_room, gears, torus_on_peg, chain_of_links,
          bsp_walk]  # in the folder paper

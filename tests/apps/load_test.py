@@ -54,7 +54,7 @@ class Limits(Load):
         self.assert_between(report["collapse"], 100 * G * 0.5 / 2)
         self.assertEqual(report["collapse"]["kind"], "collapse")
         self.assertEqual(report["collapse"]["moves"][0]["object"], "block")
-        self.assertGreater(report["collapse"]["moves"][0]["way"][0], 0.3)
+        self.assertGreater(report["collapse"]["moves"][0]["way"][0], 0.01)
 
     def test_a_block_slides_where_the_force_is_that_of_friction(self):
         report, _ = self.load(block([0.5, 0.5, 0.5], 0.3), "--on", "block", "--direction", "1,0,0")
@@ -211,6 +211,13 @@ class Stacks(Load):
                 limits.append(2 * count * G * 0.5 * (1 - share) / beyond)
         report, _ = self.load(self.overhang(share), "--on", "block3")
         self.assert_between(report["collapse"], min(limits))
+
+
+    def test_damping_of_bodies_takes_nothing_from_their_weight(self):
+        scene = hanging_bar()
+        scene["bodies"][0] |= {"linear_damping": 5, "angular_damping": 5}
+        report, _ = self.load(scene, "--on", "bar", "--until", 1)
+        self.assertAlmostEqual(report["equilibria"][0]["members"][0]["force"], 10 * G, delta=1e-3)
 
 
 class Reports(Load):

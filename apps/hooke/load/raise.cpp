@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace hooke::app {
@@ -21,7 +20,9 @@ constexpr double kFinest = 1e-7;          ///< Share of the weight below which s
 constexpr double kFirstShare = 0.25;      ///< Of the weight, where all of it is too much at once.
 constexpr double kMostGrowth = 2;         ///< A step of the load is at most twice the one before.
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kCoarseWays = 5;         ///< A step that can be halved may go so many times as far.
+constexpr double kMechanismWay = 0.25;    ///< Of the extent, on the way to rest without load.
+constexpr double kNarrowest = 0.6;        ///< Least step, as a share of the width that is asked for.
 constexpr double kStepAfterBreak = 0.01;  ///< Of the load at which something broke.
 
 /// Raises the load. It belongs to one call of raise_load.
@@ -43,24 +44,22 @@ class Raise {
     if (auto rest = settle(); !rest) return rest.error();
     double load = 0;
     double step = options_.first;
-    double ceiling = kNone;  // The least load that was too much since the last break.
+    bool grows = true;  // A step is tried once more after it was halved, before it grows again.
     while (!raised_.collapse && load < options_.most) {
-      double next = std::min(load + step, options_.most);
-      if (ceiling < kNone) next = ceiling - load > finest(ceiling) ? 0.5 * (load + ceiling) : ceiling;
+      const double next = std::min(load + step, options_.most);
       const std::size_t breaks = raised_.breaks.size();
       auto reached = attempt(load, next);
       if (!reached) return reached.error();
       if (raised_.breaks.size() > breaks) {
         if (options_.until_break) break;
-        ceiling = kNone;
         step = std::max(kStepAfterBreak * next, finest(next));
-      } else if (reached.value()) {
+      } else if (!reached.value()) {
+        step = std::max(0.5 * (next - load), kNarrowest * finest(next));
+      } else if (grows) {
         step = std::min(kMostGrowth * (next - load), std::max(next, options_.first));
       }
-      // A load that was too much as one step of many may be carried when it is come near to.
-      if (reached.value() && next >= ceiling) ceiling = kNone;
+      grows = reached.value();
       if (reached.value()) load = next;
-      if (!reached.value() && !raised_.collapse) ceiling = next;
     }
     return std::move(raised_);
   }
@@ -124,7 +123,7 @@ class Raise {
     const bool rests = outcome.value().end == RestOutcome::End::kRest;
     raised_.settling = start.moves(simulation_.world());
     const std::vector<Move>& moves = raised_.settling;
-    raised_.is_mechanism = !rests || (!moves.empty() && length(moves[0].way) > options_.way);
+    raised_.is_mechanism = !rests || (!moves.empty() && length(moves[0].way) > kMechanismWay * extent_);
     start_ = push_.place(simulation_.world());
     if (rests) {
       record(0, outcome.value());
