@@ -18,6 +18,13 @@ double farthest(const std::vector<Move>& moves) {
   return moves.empty() ? 0 : length(moves.front().way);
 }
 
+/// Factor on the drift that counts as rest. What jitters or creeps, as large cloths do, is given up on late,
+/// and its residual tells how near it came.
+double leniency(std::uint64_t steps, std::uint64_t most) {
+  if (3 * steps < most) return 1;
+  return 10 * steps < 9 * most ? 100 : 1000;
+}
+
 /// Watches the kinetic energy for its peaks.
 class Peaks {
  public:
@@ -105,7 +112,8 @@ Result<RestOutcome> Relaxation::run(double load, const RestRules& rules) {
       window.set_loose(movers_->loose());
     }
     if (outcome.steps % second != 0) continue;
-    if (farthest(window.moves(world)) <= rules.drift) return outcome.end = End::kRest, outcome;
+    if (farthest(window.moves(world)) <= rules.drift * leniency(outcome.steps, rules.steps))
+      return outcome.end = End::kRest, outcome;
     window.mark(world);
   }
   return outcome;
