@@ -106,6 +106,9 @@ Rows free_precession(const CheckSetting& setting);
 Rows sleeping_top(const CheckSetting& setting);
 Rows isolated_bodies(const CheckSetting& setting);
 
+// trusses.cpp has structures of hooks.
+Rows trusses(const CheckSetting& setting);
+
 // impact.cpp has impacts of bodies.
 Rows bouncing_ball(const CheckSetting& setting);
 Rows bouncing_box(const CheckSetting& setting);

@@ -113,7 +113,7 @@ std::vector<CheckCase> cases_of_soft_matter() {
   };
 }
 
-/// These are V81 to V94: water and air, and how the step affects an answer.
+/// These are V81 to V95: water and air, how the step affects an answer, and structures.
 std::vector<CheckCase> cases_of_surroundings_and_time() {
   return {
       {"V81", "Floating bodies", floating_bodies_in_water},
@@ -123,6 +123,7 @@ std::vector<CheckCase> cases_of_surroundings_and_time() {
       {"V91", "Order by halving the step", orders, 1.0 / 60},
       {"V92", "Overload", overload, 2e-4, 1.0 / 60},
       {"V94", "The paper's limits of stability", stability, 1.0 / 60},
+      {"V95", "Truss", trusses},
   };
 }
 

@@ -58,6 +58,7 @@ TEST_SUITE("check/cases") {
     CHECK(failed_rows("V17", light) == 14);
     CHECK(failed_rows("V18", light) >= 2);
     CHECK(failed_rows("V19", light) == 3);
+    CHECK(failed_rows("V95", light) == 4);
     CHECK(failed_rows("V62", light) == 6);
     CHECK(failed_rows("I3", light) == 2);
     CHECK(failed_rows("I23", light) == 3);
