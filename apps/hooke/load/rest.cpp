@@ -25,23 +25,6 @@ double leniency(std::uint64_t steps, std::uint64_t most) {
   return 10 * steps < 9 * most ? 100 : 1000;
 }
 
-/// Watches the kinetic energy for its peaks.
-class Peaks {
- public:
-  /// Takes the energy after a step [J]. Returns whether it fell after it had risen.
-  bool passed(double kinetic) {
-    const bool fell = kinetic < last_;
-    const bool is_peak = fell && rising_;
-    rising_ = !fell;
-    last_ = is_peak ? 0 : kinetic;
-    return is_peak;
-  }
-
- private:
-  double last_ = 0;
-  bool rising_ = false;
-};
-
 }  // namespace
 
 Relaxation::Relaxation(Simulation& simulation, Movers& movers, const Push& push)
@@ -78,43 +61,50 @@ std::vector<LoadBreak> Relaxation::take_breaks() {
   return breaks;
 }
 
-Result<RestOutcome> Relaxation::run(double load, const RestRules& rules) {
-  using End = RestOutcome::End;
+Result<void> Relaxation::step(double load) {
+  if (auto pushed = push_->apply(simulation_->world(), load); !pushed) return pushed;
+  if (simulation_->step().moved) return {};
+  return Error{ErrorCode::kOutOfRange, simulation_->scene().path, "the step did not move"};
+}
+
+bool Relaxation::settles(Attempt& attempt, const RestRules& rules) {
   World& world = simulation_->world();
   const auto dt = static_cast<double>(simulation_->scene().dt);
   const auto second = static_cast<std::uint64_t>(std::max(1.0, std::round(1 / dt)));
+  const std::uint64_t steps = attempt.outcome.steps;
+  const Unrest unrest = movers_->unrest(world, dt);
+  attempt.outcome.residual = unrest.residual;
+  const bool at_rest = unrest.sum <= rules.residual && unrest.speed <= rules.speed && !attempt.broke;
+  attempt.calm = at_rest ? attempt.calm + 1 : 0;
+  if (attempt.calm >= kCalmSteps) return true;
+  if (attempt.peaks.passed(unrest.kinetic)) movers_->stop(world);
+  if (rules.way > 0 && steps % kLooseInterval == 0) {
+    for (std::string& name : movers_->find_loose(*simulation_, push_->names(), rules.way))
+      attempt.outcome.fell_off.push_back(std::move(name));
+    attempt.second.set_loose(movers_->loose());
+  }
+  if (steps % second != 0) return false;
+  if (farthest(attempt.second.moves(world)) <= rules.drift * leniency(steps, rules.steps)) return true;
+  attempt.second.mark(world);
+  return false;
+}
+
+Result<RestOutcome> Relaxation::run(double load, const RestRules& rules) {
+  using End = RestOutcome::End;
+  const World& world = simulation_->world();
   const std::vector<DVec3> start = push_->places(world);
-  RestOutcome outcome;
-  Peaks peaks;
-  Movers window = *movers_;  // marked once a second, to see drift
-  window.mark(world);
   movers_->mark(world);
-  for (int calm = 0; outcome.steps < rules.steps;) {
-    if (auto pushed = push_->apply(world, load); !pushed) return pushed.error();
-    if (!simulation_->step().moved) {
-      return Error{ErrorCode::kOutOfRange, simulation_->scene().path, "the step did not move"};
-    }
+  Attempt attempt = {.outcome = {}, .peaks = {}, .second = *movers_};
+  RestOutcome& outcome = attempt.outcome;
+  while (outcome.steps < rules.steps) {
+    if (auto stepped = step(load); !stepped) return stepped.error();
     ++outcome.steps;
     std::vector<LoadBreak> breaks = take_breaks();
-    const bool broke = !breaks.empty();
+    attempt.broke = !breaks.empty();
     for (LoadBreak& one : breaks) outcome.breaks.push_back(std::move(one));
-    const Unrest unrest = movers_->unrest(world, dt);
-    outcome.residual = unrest.residual;
-    if (broke && rules.ends_at_break) return outcome.end = End::kBroke, outcome;
+    if (attempt.broke && rules.ends_at_break) return outcome.end = End::kBroke, outcome;
     if (rules.way > 0 && push_->farthest(world, start) > rules.way) return outcome.end = End::kMoved, outcome;
-    const bool at_rest = unrest.sum <= rules.residual && unrest.speed <= rules.speed && !broke;
-    calm = at_rest ? calm + 1 : 0;
-    if (calm >= kCalmSteps) return outcome.end = End::kRest, outcome;
-    if (peaks.passed(unrest.kinetic)) movers_->stop(world);
-    if (rules.way > 0 && outcome.steps % kLooseInterval == 0) {
-      for (std::string& name : movers_->find_loose(*simulation_, push_->names(), rules.way))
-        outcome.fell_off.push_back(std::move(name));
-      window.set_loose(movers_->loose());
-    }
-    if (outcome.steps % second != 0) continue;
-    if (farthest(window.moves(world)) <= rules.drift * leniency(outcome.steps, rules.steps))
-      return outcome.end = End::kRest, outcome;
-    window.mark(world);
+    if (settles(attempt, rules)) return outcome.end = End::kRest, outcome;
   }
   return outcome;
 }

@@ -30,6 +30,23 @@ struct RestOutcome {
   std::vector<std::string> fell_off = {};
 };
 
+/// Watches the kinetic energy for its peaks.
+class Peaks {
+ public:
+  /// Takes the energy after a step [J]. Returns whether it fell after it had risen.
+  bool passed(double kinetic) {
+    const bool fell = kinetic < last_;
+    const bool is_peak = fell && rising_;
+    rising_ = !fell;
+    last_ = is_peak ? 0 : kinetic;
+    return is_peak;
+  }
+
+ private:
+  double last_ = 0;
+  bool rising_ = false;
+};
+
 /// Brings simulations to rest by dynamic relaxation with kinetic damping (Cundall 1976; Papadrakakis 1981;
 /// Barnes 1999): it runs freely, and takes all speed away when the kinetic energy has passed a peak. No
 /// damping force is left in the equilibrium, and one way past a peak is all it overshoots.
@@ -41,7 +58,19 @@ class Relaxation {
   [[nodiscard]] Result<RestOutcome> run(double load, const RestRules& rules);
 
  private:
+  /// What is known while it runs.
+  struct Attempt {
+    RestOutcome outcome;
+    Peaks peaks;
+    Movers second;       ///< Marked once a second, to see drift.
+    int calm = 0;        ///< Calm steps on end.
+    bool broke = false;  ///< Whether something broke in the last step.
+  };
+
+  [[nodiscard]] Result<void> step(double load);
   [[nodiscard]] std::vector<LoadBreak> take_breaks();
+  /// Looks at the state after a step, and damps it. Returns whether it is rest.
+  [[nodiscard]] bool settles(Attempt& attempt, const RestRules& rules);
 
   Simulation* simulation_;
   Movers* movers_;
