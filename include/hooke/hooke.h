@@ -4,6 +4,7 @@
 #include "hooke/clock.h"
 #include "hooke/desc.h"
 #include "hooke/event.h"
+#include "hooke/fracture.h"
 #include "hooke/geometry.h"
 #include "hooke/hand.h"
 #include "hooke/id.h"
