@@ -88,7 +88,7 @@ TEST_SUITE("geometry/fracture") {
                                box_mesh({1000, 0, 0}, {1001, 2, 3})};
     for (const MeshDesc& solid : solids) {
       for (const int count : {1, 2, 7, 150}) {
-        const Fracture pieces = fracture(solid, {.cells = count, .seed = 7}).value();
+        const Fracture pieces = fracture(solid, {.cells = count, .seed = 7, .least_face = 0}).value();
         CAPTURE(count);
         CHECK(pieces.cells.size() + pieces.merged == static_cast<std::size_t>(count));
         CHECK(volume_of(pieces) == doctest::Approx(volume_of(solid)).epsilon(1e-12));
@@ -193,7 +193,7 @@ TEST_SUITE("geometry/fracture") {
     std::mt19937 random(3);
     const SolidMesh solids[] = {make_ring(24, 0.6, 1, 0.2), make_star(2, 0.6, random), make_corner()};
     for (const SolidMesh& solid : solids) {
-      const Fracture pieces = fracture(mesh_of(solid), {.cells = 20, .seed = 5}).value();
+      const Fracture pieces = fracture(mesh_of(solid), {.cells = 20, .seed = 5, .least_face = 0}).value();
       CHECK(pieces.cells.size() + pieces.merged >= 20);
       CHECK(volume_of(pieces) == doctest::Approx(volume_of(mesh_of(solid))).epsilon(1e-10));
       double inner = 0;
@@ -222,6 +222,25 @@ TEST_SUITE("geometry/fracture") {
     CHECK(near_count > 50);
     CHECK(far / far_count > 10 * near / near_count);
     CHECK(volume_of(pieces) == doctest::Approx(volume_of(pane)).epsilon(1e-12));
+  }
+
+  TEST_CASE("faces that are small for their cells are no bonds, and every cell keeps its largest one") {
+    const Fracture all = fracture(make_sphere(2), {.cells = 60, .least_face = 0}).value();
+    const Fracture some = fracture(make_sphere(2), {.cells = 60, .least_face = 0.5}).value();
+    CHECK(all.unbonded_share == 0);
+    CHECK(bond_area(some) == doctest::Approx((1 - some.unbonded_share) * bond_area(all)).epsilon(1e-12));
+    CHECK(some.unbonded_share > 0.01);
+    CHECK(some.unbonded_share < 0.4);
+    std::vector<double> largest(all.cells.size(), 0);
+    std::vector<double> kept(all.cells.size(), 0);
+    const auto note = [](const Fracture& pieces, std::vector<double>& area) {
+      for (const FractureBond& bond : pieces.bonds) {
+        for (const std::uint32_t cell : {bond.a, bond.b}) area[cell] = std::max(area[cell], bond.area);
+      }
+    };
+    note(all, largest);
+    note(some, kept);
+    CHECK(largest == kept);
   }
 
   TEST_CASE("small cells, empty ones and seeds at one place are merged, and counted") {
@@ -276,6 +295,8 @@ TEST_SUITE("geometry/fracture") {
     CHECK(where_of(fracture(box, {.impact_radius = kNan})) == "impact_radius");
     CHECK(where_of(fracture(box, {.least_share = 0.6})) == "least_share");
     CHECK(where_of(fracture(box, {.least_share = kNan})) == "least_share");
+    CHECK(where_of(fracture(box, {.least_face = kNan})) == "least_face");
+    CHECK(where_of(fracture(box, {.least_face = -1})) == "least_face");
     MeshDesc open = box;
     open.triangles.pop_back();
     CHECK_FALSE(fracture(open, {}).has_value());

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,9 @@ Result<void> check(const FractureDesc& desc) {
     return fracture_error("impact_radius",
                           std::to_string(desc.impact_radius) + " is out of range, must be 0.001 to 1");
   }
+  if (!is_within(desc.least_face, 0, 1)) {
+    return fracture_error("least_face", std::to_string(desc.least_face) + " is out of range, must be 0 to 1");
+  }
   if (!is_within(desc.least_share, 0, 0.5)) {
     return fracture_error("least_share",
                           std::to_string(desc.least_share) + " is out of range, must be 0 to 0.5");
@@ -72,13 +76,13 @@ void set_mesh(std::span<const DVec3> points, std::vector<Triangle> triangles, DV
 }
 
 /// Makes cells and bonds of the polyhedra of a convex solid.
-Fracture assemble(const FractureSolid& solid, const VoronoiCells& voronoi) {
-  Fracture made = {.merged = voronoi.merged};
+Fracture assemble(const FractureSolid& solid, std::span<const DVec3> seeds, const VoronoiCells& voronoi) {
+  Fracture made;
   std::vector<std::uint32_t> cell_of(voronoi.cells.size(), FractureCell::kSurface);
   for (std::uint32_t i = 0; i < voronoi.cells.size(); ++i) {
     if (!voronoi.cells[i].polyhedron.faces.empty()) {
       cell_of[i] = static_cast<std::uint32_t>(made.cells.size());
-      made.cells.push_back({.seed = i});
+      made.cells.push_back({.seed = i, .seed_place = solid.origin + seeds[i]});
     }
   }
   const double least = kLeastFace * solid.diagonal * solid.diagonal;
@@ -109,10 +113,12 @@ Fracture assemble(const FractureSolid& solid, const VoronoiCells& voronoi) {
 }
 
 /// Makes cells and bonds of the parts that cells of a solid that is not convex consist of.
-Fracture assemble(const FractureSolid& solid, const geometry::FracturedParts& parts, double least) {
+Fracture assemble(const FractureSolid& solid, std::span<const DVec3> seeds,
+                  const geometry::FracturedParts& parts, double least) {
   Fracture made;
   for (const geometry::FracturedPart& part : parts.parts) {
-    FractureCell cell = {.across = part.across, .seed = part.seed};
+    FractureCell cell = {
+        .across = part.across, .seed = part.seed, .seed_place = solid.origin + seeds[part.seed]};
     set_mesh(part.points, part.triangles, solid.origin, cell);
     cell.is_convex = geometry::is_convex_solid(cell.mesh);
     made.small_pieces += cell.volume < least ? 1 : 0;
@@ -127,6 +133,23 @@ Fracture assemble(const FractureSolid& solid, const geometry::FracturedParts& pa
   return made;
 }
 
+/// Leaves out bonds that are small for both of their cells. The largest face of a cell always stays.
+void drop_small_faces(double least_face, Fracture& made) {
+  std::vector<double> largest(made.cells.size(), 0);
+  double whole = 0;
+  for (const FractureBond& bond : made.bonds) {
+    largest[bond.a] = std::max(largest[bond.a], bond.area);
+    largest[bond.b] = std::max(largest[bond.b], bond.area);
+    whole += bond.area;
+  }
+  std::erase_if(made.bonds, [&](const FractureBond& bond) {
+    return bond.area < least_face * std::min(largest[bond.a], largest[bond.b]);
+  });
+  double left = whole;
+  for (const FractureBond& bond : made.bonds) left -= bond.area;
+  if (whole > 0) made.unbonded_share = std::max(0.0, left) / whole;
+}
+
 }  // namespace
 
 Result<Fracture> fracture(const MeshDesc& mesh, const FractureDesc& desc) {
@@ -139,10 +162,16 @@ Result<Fracture> fracture(const MeshDesc& mesh, const FractureDesc& desc) {
   const double least = desc.least_share * solid.value().volume / static_cast<double>(seeds.value().size());
   const Result<VoronoiCells> cells = geometry::divide(solid.value(), seeds.value(), least);
   if (!cells) return cells.error();
-  if (solid.value().is_convex) return assemble(solid.value(), cells.value());
-  Fracture made = assemble(solid.value(),
-                           geometry::find_parts(cells.value(), seeds.value(), solid.value().diagonal), least);
+  Fracture made;
+  if (solid.value().is_convex) {
+    made = assemble(solid.value(), seeds.value(), cells.value());
+  } else {
+    const geometry::FracturedParts parts =
+        geometry::find_parts(cells.value(), seeds.value(), solid.value().diagonal);
+    made = assemble(solid.value(), seeds.value(), parts, least);
+  }
   made.merged = cells.value().merged;
+  drop_small_faces(desc.least_face, made);
   return made;
 }
 
