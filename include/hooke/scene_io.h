@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hooke/desc.h"
+#include "hooke/fracture.h"
 #include "hooke/lab.h"
 #include "hooke/model_io.h"
 #include "hooke/placement.h"
@@ -145,6 +146,11 @@ struct ScenePart {
   std::string mesh = {};      ///< Name in Scene::meshes, for a mesh or a hull.
   std::string material = {};  ///< Name in Scene::materials; the body's by default.
 };
+/// How a body is broken beforehand.
+struct SceneFracture {
+  FractureDesc desc = {};     ///< How it is divided. Places are in the body's frame.
+  Real strength = Real(1e6);  ///< Stress at which the glue between the cells breaks [Pa], or kRigid.
+};
 /// A body.
 struct SceneBody {
   SceneTag tag = {};                  ///< Name, material, friction and copies.
@@ -152,6 +158,9 @@ struct SceneBody {
   std::string mesh = {};              ///< Name in Scene::meshes, for a mesh or a hull.
   std::string visual = {};            ///< Name in Scene::meshes of what is drawn in place of the shape.
   std::vector<ScenePart> parts = {};  ///< Shapes of a compound, in place of desc.parts.
+  /// Replaces a dynamic box, hull or mesh by its cells, named `name[0]`, ..., of all copies one after the
+  /// other, and the hooks between them, `name_glue[0]`, ...
+  std::optional<SceneFracture> fracture = {};
 };
 /// A rope.
 struct SceneRope {
@@ -183,7 +192,8 @@ struct SceneParticles {
   std::vector<ScenePin> pins = {};  ///< Particles that are held.
 };
 /// A hook. In an array, copy i holds copy i of `a` and of `b` if they are arrays, counted from the copy that
-/// is named: with "link[1]", copy i holds link[1 + i].
+/// is named: with "link[1]", copy i holds link[1 + i]. A hook that is no array and names a fractured body
+/// without a number holds the cell in which its anchor lies, or which has the named connection point.
 struct SceneHook {
   std::string name = {};             ///< Name as SceneTag::name.
   HookDesc desc = {};                ///< The hook, except for `a`, `b` and `anchor`.

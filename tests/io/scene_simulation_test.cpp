@@ -201,6 +201,80 @@ TEST_SUITE("io/scene_simulation") {
           "demo.json:2:79: meshes.leaf.connection_points.eye: 3 is out of range, must be 0 to 2");
   }
 
+  TEST_CASE("a fractured body becomes cells and glue, which may be named, hooked and expected to break") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1, "seconds": 1,
+      "materials": {"glass": {"color": [0, 1, 0]}},
+      "meshes": {"kite": {"vertices": [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
+        "triangles": [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]}},
+      "bodies": [
+        {"name": "bar", "kind": "dynamic", "material": "glass", "shape": {"box": {"half_extents": [2, 0.1, 0.1]}},
+         "connection_points": {"eye": [1.7, 0, 0]}, "density": 100,
+         "fracture": {"seeds": [[-1.5, 0, 0], [-0.5, 0, 0], [0.5, 0, 0], [1.5, 0, 0]], "strength": 1e6},
+         "array": {"grid": [1, 1, 2], "spacing": [0, 0, 3]}},
+        {"name": "gem", "kind": "dynamic", "shape": {"mesh": "kite"}, "position": [0, 9, 0],
+         "fracture": {"cells": 6, "seed": 2}},
+        {"name": "hull", "kind": "dynamic", "shape": {"hull": "kite"}, "position": [9, 9, 0],
+         "fracture": {"cells": 6, "seed": 2, "strength": "rigid"}}],
+      "hooks": [{"name": "left", "kind": "fixed", "b": "bar", "anchor": [-1.9, 0, 0]},
+                {"name": "right", "kind": "fixed", "b": "bar.eye"},
+                {"name": "second", "kind": "fixed", "b": "bar[4]", "anchor": [-1.9, 0, 3]}],
+      "expect": [{"quantity": "broken", "op": "<=", "value": 1},
+                 {"quantity": "broken", "of": "bar_glue[0]", "op": "==", "value": 0}]
+    })");
+    std::size_t bars = 0;
+    std::size_t gems = 0;
+    for (const hooke::SceneObject& object : simulation.objects()) {
+      if (object.name.starts_with("bar[")) ++bars;
+      if (object.name.starts_with("gem[")) ++gems;
+    }
+    CHECK(bars == 8);
+    CHECK(gems == 6);
+    CHECK(simulation.find("bar[7]")->look.color[1] == 1);
+    CHECK(simulation.find("bar[7]")->shape.kind == hooke::ShapeKind::kHull);
+    CHECK(simulation.find("bar[8]") == nullptr);
+    CHECK(simulation.find("bar_glue[5]")->hooked == std::array<std::string, 2>{"bar[6]", "bar[7]"});
+    CHECK(simulation.find("bar_glue[6]") == nullptr);
+    CHECK(simulation.find("left")->hooked[1] == "bar[0]");
+    CHECK(simulation.find("right")->hooked[1] == "bar[3]");
+    CHECK(simulation.find("second")->hooked[1] == "bar[4]");
+    // Each cell has 4 kg, and all hang on the one that is held.
+    simulation.run();
+    CHECK(simulation.passed());
+    const auto force = [&](const char* hook) {
+      return static_cast<double>(length(simulation.world().hook_force(simulation.find(hook)->hook).force));
+    };
+    CHECK(force("second") == doctest::Approx(16 * 9.81).epsilon(1e-3));
+    CHECK(force("bar_glue[3]") == doctest::Approx(12 * 9.81).epsilon(1e-3));
+    hooke::Simulation again = simulate(hooke::write_scene(simulation.scene()));
+    again.run();
+    CHECK(again.world().state_hash() == simulation.world().state_hash());
+    REQUIRE(simulation.remove("bar").has_value());
+    CHECK(simulation.find("bar[2]") == nullptr);
+    CHECK(simulation.find("bar_glue[2]") == nullptr);
+  }
+
+  TEST_CASE("what cannot be fractured is said at its place") {
+    const auto complaint = [](const std::string& rest) {
+      auto scene =
+          hooke::parse_scene(R"({"version": 1, "bodies": [{"name": "b", )" + rest + "}]}", "demo.json");
+      if (!scene) return hooke::to_line(scene.errors.front());
+      const auto simulation = hooke::Simulation::create(std::move(*scene.value));
+      return simulation ? std::string() : hooke::to_line(simulation.errors.front());
+    };
+    CHECK(
+        complaint(R"("shape": {"box": {}}, "fracture": {})") ==
+        "demo.json:1:27: bodies[0]: 'fracture' is for a dynamic body; hooks to the world may hold its cells");
+    CHECK(complaint(R"("kind": "dynamic", "shape": {"sphere": {}}, "fracture": {})") ==
+          "demo.json:1:27: bodies[0]: 'fracture' is for a box, a hull or a mesh");
+    CHECK(complaint(R"("kind": "dynamic", "shape": {"box": {}}, "fracture": {"strength": 0})") ==
+          "demo.json:1:107: bodies[0].fracture.strength: 0 is out of range, must be greater than 0 or "
+          "\"rigid\"");
+    CHECK(complaint(R"("kind": "dynamic", "shape": {"box": {}}, "fracture": {"impact": [9, 0, 0]})") ==
+          "demo.json:1:105: bodies[0].fracture.impact: lies outside the box around the solid; it should lie "
+          "in or on it");
+  }
+
   TEST_CASE("hooks hold points by number, the last one, and the place nearest to their anchor") {
     const hooke::Simulation simulation = simulate(R"({
       "version": 1,

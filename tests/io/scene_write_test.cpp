@@ -90,6 +90,9 @@ constexpr const char* kEverything = R"({
       {"shape": {"cylinder": {"half_height": 2}}}, {"shape": {"box": {"half_extents": [1, 2, 3]}}},
       {"shape": {"sphere": {"radius": 2}}}, {"shape": {"hull": "inline"}}]}},
     {"kind": "kinematic", "shape": {"hull": "inline"}, "surface_velocity": [0, 0, 1], "motion": {"velocity": [0, 1, 0]}},
+    {"name": "glass", "kind": "dynamic", "shape": {"box": {}}, "fracture": {"cells": 5, "seed": 8, "impact": [0.1, 0, 0], "impact_radius": 0.1,
+     "least_share": 0.1, "least_face": 0.2, "strength": 5000}},
+    {"kind": "dynamic", "shape": {"box": {}}, "fracture": {"seeds": [[0, 0, 0], [0.5, 0, 0]], "strength": "rigid"}},
     {"shape": {"capsule": {}}, "sensor": true}, {"shape": {"cylinder": {}}}],
   "ropes": [
     {"name": "rope", "stepper": "verlet", "hook_point": [0, 3, 0], "direction": [0, -1, 0], "total_mass": 2,

@@ -1,3 +1,5 @@
+#include "hooke/fracture.h"
+
 #include "geometry/convex/convex_hull.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 #include "io/scene/scene_check.h"
@@ -54,6 +56,15 @@ class Builder {
                                         std::size_t instance) const;
   /// Returns the object that copy `i` of a hook names; null for the world.
   Result<const SceneObject*> find_end(const std::string& name, const SceneArray& array, std::size_t i) const;
+  /// Returns the object at an end of copy `i` of a hook; of a fractured body without a number, the cell that
+  /// the hook's anchor or the end's connection point chooses.
+  Result<const SceneObject*> find_hooked(const SceneHook& hook, const EndName& end, std::size_t i) const;
+  /// Returns the closed surface of a body that is to be divided. If there is none it says why.
+  std::optional<MeshDesc> surface_of(const SceneBody& body, const std::string& path);
+  /// Adds the cells of the copies of a body that is broken beforehand, and their glue.
+  void build_fractured(const SceneBody& body, BodyDesc desc, const std::string& path);
+  bool keep_cells(const SceneBody& body, const Fracture& pieces, const FracturedBody& made,
+                  const std::string& path);
   [[nodiscard]] HookEnd end_at(const SceneObject* object, const std::optional<ScenePoint>& point) const;
   /// Splits the name of an end into an object, or the first copy of an array, and a point.
   [[nodiscard]] EndName split_end(const std::string& name) const;
@@ -143,6 +154,13 @@ void Builder::add_places_of(const std::string& mesh, Vec3 position, Quat rotatio
   }
 }
 
+/// Makes a model that shows each face as flat.
+std::shared_ptr<const Model> flat_model(const MeshDesc& faces) {
+  // This crease angle [rad] is far less than that of any two faces of a hull that the eye can tell apart.
+  constexpr double kFlat = 1e-3;
+  return std::make_shared<const Model>(model_of(faces, kFlat));
+}
+
 /// Makes polygons as fans, with flat faces. It returns null for points without a hull, which the world then
 /// reports.
 std::shared_ptr<const Model> hull_model(const MeshDesc& mesh) {
@@ -156,10 +174,7 @@ std::shared_ptr<const Model> hull_model(const MeshDesc& mesh) {
       faces.triangles.push_back({corner(0), corner(k), corner(k + 1)});
     }
   }
-  constexpr double kFlat =
-      // This crease angle [rad] is far less than that of any two faces of a hull that the eye can tell apart.
-      1e-3;
-  return std::make_shared<const Model>(model_of(faces, kFlat));
+  return flat_model(faces);
 }
 
 std::shared_ptr<const Model> Builder::drawn_model(ShapeKind kind, const std::string& mesh) {
@@ -316,6 +331,7 @@ void Builder::build(const SceneBody& body, const std::string& path) {
   const std::size_t before = errors_.size();
   BodyDesc desc = resolve(body);
   if (errors_.size() > before) return;
+  if (body.fracture) return build_fractured(body, std::move(desc), path);
   const std::shared_ptr<const Model> model = drawn_model(body.desc.shape.kind, body.mesh);
   const std::vector<SceneObject::Part> parts = drawn_parts(body);
   for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
@@ -328,6 +344,74 @@ void Builder::build(const SceneBody& body, const std::string& path) {
     object.model = model;
     if (!body.visual.empty()) object.visual = data_.models[body.visual].model;
     if (!keep(object, &SceneObject::body, data_.world.add_body(placed(desc, data_.placement)))) return;
+  }
+}
+
+MeshDesc box_mesh(Vec3 half_extents) {
+  return geometry::mesh_of(geometry::make_box_hull(half_extents));
+}
+
+std::optional<MeshDesc> Builder::surface_of(const SceneBody& body, const std::string& path) {
+  const Shape& shape = body.desc.shape;
+  if (shape.kind == ShapeKind::kBox) return box_mesh(shape.half_extents);
+  if (shape.kind == ShapeKind::kMesh) {
+    if (!solid_mesh_of(body.mesh)) return std::nullopt;
+    return data_.solid_surfaces[body.mesh];
+  }
+  const auto found = data_.models.find(body.mesh);
+  if (found == data_.models.end()) return std::nullopt;
+  const Result<geometry::ConvexHull> hull = geometry::make_convex_hull(found->second.model->mesh.positions);
+  if (hull) return geometry::mesh_of(hull.value());
+  fail(path + ".shape.hull", hull.error().code, hull.error().message);
+  return std::nullopt;
+}
+
+bool Builder::keep_cells(const SceneBody& body, const Fracture& pieces, const FracturedBody& made,
+                         const std::string& path) {
+  const std::string name = body.tag.name.empty() ? path : body.tag.name;
+  const auto next_number = [&](const std::string& array) {
+    std::size_t number = 0;
+    while (data_.row_of.contains(indexed(array, number))) ++number;
+    return number;
+  };
+  const std::size_t first = next_number(name);
+  for (std::size_t i = 0; i < made.bodies.size(); ++i) {
+    const FractureCell& cell = pieces.cells[i];
+    SceneObject object = make_object({.material = body.tag.material}, SceneObject::Kind::kBody, path, 0);
+    object.name = indexed(name, first + i);
+    object.shape = cell.is_convex ? Shape::hull_of(made.meshes[i]) : Shape::of_mesh(made.meshes[i]);
+    object.model = cell.is_convex ? hull_model(cell.mesh) : flat_model(cell.mesh);
+    if (!keep(object, &SceneObject::body, Result<BodyId>(made.bodies[i]))) return false;
+  }
+  const std::size_t first_glue = next_number(glue_name(name));
+  for (std::size_t k = 0; k < made.hooks.size(); ++k) {
+    SceneObject object = make_object({}, SceneObject::Kind::kHook, path, 0);
+    object.name = indexed(glue_name(name), first_glue + k);
+    object.hook_kind = HookKind::kFixed;
+    object.hooked = {indexed(name, first + pieces.bonds[k].a), indexed(name, first + pieces.bonds[k].b)};
+    if (!keep(object, &SceneObject::hook, Result<HookId>(made.hooks[k]))) return false;
+  }
+  return true;
+}
+
+void Builder::build_fractured(const SceneBody& body, BodyDesc desc, const std::string& path) {
+  const std::optional<MeshDesc> surface = surface_of(body, path);
+  if (!surface) return;
+  const Result<Fracture> pieces = fracture(*surface, body.fracture->desc);
+  if (!pieces) {
+    const std::string where = pieces.error().where.starts_with("mesh") ? "" : "." + pieces.error().where;
+    return fail(path + ".fracture" + where, pieces.error().code, pieces.error().message);
+  }
+  const std::size_t points = pieces.value().cells.size() + pieces.value().bonds.size();
+  for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
+    if (!reserve(points, path)) return;
+    desc.position = body.desc.position + body.tag.array.offset(i);
+    desc.rotation = normalize(body.tag.array.rotation(i)) * normalize(body.desc.rotation);
+    const Result<FracturedBody> made =
+        add_fractured(data_.world, pieces.value(), placed(desc, data_.placement), body.fracture->strength);
+    if (!made)
+      return fail(path + ".fracture", made.error().code, made.error().where + ": " + made.error().message);
+    if (!keep_cells(body, pieces.value(), made.value(), path)) return;
   }
 }
 
@@ -489,6 +573,19 @@ EndName Builder::split_end(const std::string& name) const {
   return is_object ? EndName{name} : take_end_name(name);
 }
 
+Result<const SceneObject*> Builder::find_hooked(const SceneHook& hook, const EndName& end,
+                                                std::size_t i) const {
+  const bool any_cell = hook.array.kind == SceneArray::Kind::kSingle && !data_.row_of.contains(end.object) &&
+                        data_.row_of.contains(indexed(end.object, 0));
+  if (!any_cell) return find_end(end.object, hook.array, i);
+  const DVec3 anchor = data_.placement.point(hook.anchor.value_or(DVec3{}));
+  const SceneObject* cell = find_cell(data_, end, anchor);
+  if (cell != nullptr) return cell;
+  return Error{
+      ErrorCode::kOutOfRange, "",
+      "no cell of " + in_quotes(end.object) + " has the connection point " + in_quotes(end.connection_point)};
+}
+
 HookEnd Builder::end_at(const SceneObject* object, const std::optional<ScenePoint>& wanted) const {
   if (object == nullptr) return {};
   if (object->kind == SceneObject::Kind::kBody) return {.body = object->body};
@@ -503,8 +600,8 @@ void Builder::build(const SceneHook& hook, const std::string& path) {
     if (!reserve(1, path)) return;
     const EndName name_a = split_end(hook.a);
     const EndName name_b = split_end(hook.b);
-    const Result<const SceneObject*> a = find_end(name_a.object, hook.array, i);
-    const Result<const SceneObject*> b = find_end(name_b.object, hook.array, i);
+    const Result<const SceneObject*> a = find_hooked(hook, name_a, i);
+    const Result<const SceneObject*> b = find_hooked(hook, name_b, i);
     if (!a || !b) {
       const Error& error = a ? b.error() : a.error();
       return fail(path + (a ? ".b" : ".a"), error.code, error.message);

@@ -4,7 +4,6 @@
 #include "io/scene/scene_source.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <unordered_map>
 #include <unordered_set>
@@ -64,6 +63,7 @@ class Checker {
   }
   void add_name(const std::string& name, const NamedObject& object);
   void collect(const SceneObjects& objects, const std::string& prefix);
+  void collect_body(const SceneBody& body, const std::string& path);
   void collect_hooks(const SceneObjects& objects, const std::string& prefix);
   void check_tag(const SceneTag& tag, const std::string& path);
   void check_pairs();
@@ -72,6 +72,8 @@ class Checker {
   void check_references(const SceneObjects& objects, const std::string& prefix);
   void check_body(const SceneBody& body, const std::string& path);
   void check_hook(const SceneHook& hook, const std::string& path);
+  /// Tells whether this is the name of a fractured body, and not of one of its cells.
+  [[nodiscard]] bool names_any_cell(const std::string& name) const;
   void check_hook_end(const SceneHook& hook, const std::string& end, const std::optional<ScenePoint>& point,
                       const std::string& path);
   /// A ball hook that holds points leaves their rotation free, so that rotational keys do nothing.
@@ -152,14 +154,8 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
                         .instances = tag.array.count(),
                         .points = points});
   };
-  for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    const SceneTag& tag = objects.bodies[i].tag;
-    const bool is_array = tag.array.kind != SceneArray::Kind::kSingle;
-    add_name(tag.name, {.path = indexed(prefix + "bodies", i),
-                        .is_array = is_array,
-                        .instances = tag.array.count(),
-                        .body = &objects.bodies[i]});
-  }
+  for (std::size_t i = 0; i < objects.bodies.size(); ++i)
+    collect_body(objects.bodies[i], indexed(prefix + "bodies", i));
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     const SceneRope& rope = objects.ropes[i];
     add(rope.tag, indexed(prefix + "ropes", i), SceneObject::Kind::kRope, point_count(rope));
@@ -182,6 +178,23 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
              {.path = indexed(prefix + "fields", i), .kind = SceneObject::Kind::kField});
   }
   collect_hooks(objects, prefix);
+}
+
+/// Collects a body, or the cells of one that is broken beforehand, with their glue.
+void Checker::collect_body(const SceneBody& body, const std::string& path) {
+  const SceneTag& tag = body.tag;
+  const bool is_array = tag.array.kind != SceneArray::Kind::kSingle;
+  if (!body.fracture) {
+    add_name(tag.name, {.path = path, .is_array = is_array, .instances = tag.array.count(), .body = &body});
+    return;
+  }
+  // The number of cells is known only when the body is divided.
+  add_name(tag.name, {.path = path, .is_array = true, .instances = kMostScenePoints, .body = &body});
+  add_name(glue_name(tag.name.empty() ? path : tag.name), {.path = path,
+                                                           .kind = SceneObject::Kind::kHook,
+                                                           .is_array = true,
+                                                           .instances = kMostScenePoints,
+                                                           .hook = HookKind::kFixed});
 }
 
 /// Collects hooks, and seams, which are sets of hooks.
@@ -316,6 +329,11 @@ bool Checker::is_known(const std::string& name) const {
   return objects_.contains(name) || (copy && objects_.contains(copy->array));
 }
 
+bool Checker::names_any_cell(const std::string& name) const {
+  const auto found = objects_.find(name);
+  return found != objects_.end() && found->second.body != nullptr && found->second.body->fracture;
+}
+
 void Checker::check_hook_end(const SceneHook& hook, const std::string& end,
                              const std::optional<ScenePoint>& point, const std::string& path) {
   const EndName split = is_known(end) ? EndName{end} : take_end_name(end);
@@ -325,8 +343,14 @@ void Checker::check_hook_end(const SceneHook& hook, const std::string& end,
     return;
   }
   const bool single = hook.array.kind == SceneArray::Kind::kSingle;
-  const NamedObject* object = single ? find_object(name, path) : find_named(name, path);
+  const bool any_cell = single && names_any_cell(name);
+  const NamedObject* object = single && !any_cell ? find_object(name, path) : find_named(name, path);
   if (object == nullptr) return;
+  if (any_cell && split.connection_point.empty() && !hook.anchor) {
+    fail(path, ErrorCode::kOutOfRange,
+         in_quotes(name) + " is fractured: 'anchor' or one of its connection points chooses the cell");
+    return;
+  }
   const bool body = object->kind == SceneObject::Kind::kBody;
   if (!body && !has_points(object->kind)) {
     fail(path, ErrorCode::kOutOfRange, in_quotes(name) + " cannot be hooked");
@@ -679,7 +703,12 @@ void Checker::count_points(const SceneObjects& objects, const std::string& prefi
          "with this object the scene has more than " + std::to_string(kMostScenePoints) + " points");
   };
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    count(objects.bodies[i].tag.array, objects.bodies[i].parts.size(), indexed(prefix + "bodies", i));
+    const SceneBody& body = objects.bodies[i];
+    const std::size_t seeds = !body.fracture ? 0
+                              : body.fracture->desc.seeds.empty()
+                                  ? static_cast<std::size_t>(body.fracture->desc.cells)
+                                  : body.fracture->desc.seeds.size();
+    count(body.tag.array, std::max(body.parts.size(), seeds), indexed(prefix + "bodies", i));
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     count(objects.ropes[i].tag.array, point_count(objects.ropes[i]), indexed(prefix + "ropes", i));
@@ -708,22 +737,6 @@ void Checker::check_total() {
 
 }  // namespace
 
-EndName take_end_name(const std::string& name) {
-  const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos) return {name};
-  return {name.substr(0, dot), name.substr(dot + 1)};
-}
-
-std::optional<CopyName> take_copy_name(const std::string& name) {
-  const std::size_t bracket = name.rfind('[');
-  if (bracket == std::string::npos || !name.ends_with(']')) return std::nullopt;
-  std::size_t copy = 0;
-  const char* end = name.data() + name.size() - 1;
-  const auto parsed = std::from_chars(name.data() + bracket + 1, end, copy);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
-  return CopyName{name.substr(0, bracket), copy};
-}
-
 std::size_t point_count(const SceneRope& rope) {
   return rope.desc.points.empty() ? static_cast<std::size_t>(std::max(rope.desc.masses, 0))
                                   : rope.desc.points.size();
@@ -749,31 +762,6 @@ std::size_t point_count(const SceneSolid& solid) {
 
 std::size_t point_count(const SceneParticles& particles) {
   return particles.desc.particles.size();
-}
-
-Result<std::string> locate_file(const std::string& scene_path, const std::string& file) {
-  namespace fs = std::filesystem;
-  const Error outside = {ErrorCode::kOutOfRange, file, in_quotes(file) + " is outside of the scene's folder"};
-  const bool strange = std::any_of(file.begin(), file.end(),
-                                   [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\\'; });
-  if (strange) {
-    return Error{ErrorCode::kOutOfRange, file,
-                 in_quotes(file) + " has a character that a path must not have"};
-  }
-  const fs::path relative = fs::path(file).lexically_normal();
-  if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return outside;
-  const fs::path folder = fs::path(scene_path).parent_path();
-  const fs::path joined = folder.empty() ? relative : folder / relative;
-  // A link inside the folder may still lead out of it.
-  std::error_code failure;
-  const fs::path root = fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), failure);
-  if (failure) return joined.string();
-  const fs::path real = fs::weakly_canonical(fs::absolute(joined), failure);
-  if (failure) return joined.string();
-  const auto [end, unused] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
-  static_cast<void>(unused);
-  if (end != root.end() && !end->empty()) return outside;
-  return joined.string();
 }
 
 void check_scene(const Scene& scene, const JsonDocument& document, bool files_must_exist,

@@ -21,6 +21,9 @@ struct CopyName {
 };
 [[nodiscard]] std::optional<CopyName> take_copy_name(const std::string& name);
 
+/// Returns the name of the hooks between the cells of a fractured body, before their numbers.
+[[nodiscard]] std::string glue_name(const std::string& body);
+
 /// An EndName is a name such as "crane.tip", split into an object and one of its connection points. Names
 /// have no dots, but the path that stands for an object without a name may, as in "timeline[0].add.ropes[0]".
 struct EndName {

@@ -2,6 +2,8 @@
 
 #include "hooke/scene_io.h"
 
+#include "io/scene/scene_check.h"
+
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -90,6 +92,10 @@ void build_meshes(SimulationData& data, std::vector<Error>& errors);
 /// out.
 void build_objects(const SceneObjects& objects, const std::string& prefix, SimulationData& data,
                    std::vector<Error>& errors);
+
+/// Returns the object among those named `end.object[0]`, ... that has the connection point, or, if the end
+/// names none, in which a place of the world lies or which is nearest to it; null if there is none.
+[[nodiscard]] const SceneObject* find_cell(const SimulationData& data, const EndName& end, DVec3 place);
 
 /// Fills `row_of` from `objects`, which have changed.
 void index_objects(SimulationData& data);

@@ -74,6 +74,14 @@ void IgnoredKeys::check(const SceneBody& body, const std::string& path) {
   ignore(path, {"motion"}, desc.kind != BodyKind::kKinematic, "it is for a kinematic body");
   const bool has_path = desc.kind == BodyKind::kKinematic && desc.motion.kind != MotionDesc::Kind::kStill;
   ignore(path, {"velocity"}, has_path, "'motion' replaces it");
+  if (body.fracture) {
+    ignore(path, {"visual"}, true, "the cells are drawn");
+    const std::string inner = path + ".fracture";
+    ignore(inner, {"cells", "seed", "impact", "impact_radius"}, !body.fracture->desc.seeds.empty(),
+           "'seeds' replaces it");
+    ignore(inner, {"impact_radius"}, body.fracture->desc.seeds.empty() && !body.fracture->desc.impact,
+           "it is for 'impact'");
+  }
   if (desc.kind != BodyKind::kDynamic) return;
   ignore(path, {"density"}, !body.parts.empty(), "its parts have their own");
   ignore(path, {"density"}, body.parts.empty() && desc.mass.has_value(), "'mass' replaces it");

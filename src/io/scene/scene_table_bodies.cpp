@@ -116,6 +116,10 @@ std::vector<Field> body_rows() {
   constexpr auto kDesc = &SceneBody::desc;
   return {
       required(group("shape", shape_kind, "What it is.")),
+      field<&SceneBody::fracture>(
+          "fracture", "", kAny,
+          "Makes a dynamic box, hull or mesh of glued cells: the bodies `name[0]`, ... and "
+          "the hooks `name_glue[0]`, ..."),
       field<&SceneBody::visual>("visual", "", kNotEmpty,
                                 "What is drawn in place of the shape: a name in `meshes`."),
       field<kDesc, &BodyDesc::kind>("kind", "", kAny,
@@ -154,7 +158,54 @@ std::vector<Field> body_rows() {
       field<kDesc, &BodyDesc::can_sleep>("can_sleep", "", kAny, "May rest until something wakes it.")};
 }
 
+/// A body that is to break is one that moves, and whose inside is known.
+bool check_body(Reader& reader, const JsonNode& node, const void* object) {
+  if (!check_tagged<SceneBody>(reader, node, object)) return false;
+  const auto& body = *static_cast<const SceneBody*>(object);
+  if (!body.fracture) return true;
+  if (body.desc.kind != BodyKind::kDynamic) {
+    return reader.fail(node, ErrorCode::kOutOfRange,
+                       "'fracture' is for a dynamic body; hooks to the world may hold its cells");
+  }
+  const ShapeKind kind = body.desc.shape.kind;
+  if (kind == ShapeKind::kBox || kind == ShapeKind::kHull || kind == ShapeKind::kMesh) return true;
+  return reader.fail(node, ErrorCode::kOutOfRange, "'fracture' is for a box, a hull or a mesh");
+}
+
 }  // namespace
+
+template <>
+const Kind& kind_of<SceneFracture>() {
+  constexpr auto kDesc = &SceneFracture::desc;
+  static const Kind kind = {
+      .name = "fracture",
+      .help =
+          "How a body is broken beforehand: into the Voronoi cells of seeds, which are glued where they "
+          "share a "
+          "face. The glue is made of `fixed` hooks.",
+      .fields = {field<kDesc, &FractureDesc::cells>("cells", "", between(1, 4096),
+                                                    "Number of seeds that are spread at random."),
+                 field<kDesc, &FractureDesc::seed>("seed", "", kAny, "Of the random numbers."),
+                 field<kDesc, &FractureDesc::seeds>(
+                     "seeds", "m", kNotEmpty,
+                     "Places of the seeds in the body's frame, in place of `cells`."),
+                 field<kDesc, &FractureDesc::impact>(
+                     "impact", "m", kAny, "Place in the body's frame about which random seeds crowd."),
+                 field<kDesc, &FractureDesc::impact_radius>(
+                     "impact_radius", "", between(0.001, 1),
+                     "Within this share of the diagonal of its box from `impact` cells grow no smaller."),
+                 field<kDesc, &FractureDesc::least_share>(
+                     "least_share", "", between(0, 0.5),
+                     "Cells of less than this share of the mean volume go to their neighbors."),
+                 field<kDesc, &FractureDesc::least_face>(
+                     "least_face", "", between(0, 1),
+                     "Faces below this share of the largest face of each of their cells are not glued."),
+                 field<&SceneFracture::strength>("strength", "Pa", kPositiveOrRigid,
+                                                 "A face takes this times its area as a force, and this "
+                                                 "times its section modulus as a torque.")},
+      .defaults = defaults_of<SceneFracture>};
+  return kind;
+}
 
 template <>
 const Kind& kind_of<ScenePart>() {
@@ -179,7 +230,7 @@ const Kind& kind_of<SceneBody>() {
                  .help = "A rigid body: ground, walls, and what falls on them.",
                  .fields = body_rows(),
                  .defaults = defaults_of<SceneBody>,
-                 .check = check_tagged<SceneBody>};
+                 .check = check_body};
     add_tag_rows<SceneBody>(made.fields);
     return made;
   }();
@@ -205,10 +256,10 @@ const Kind& kind_of<ScenePair>() {
 }
 
 std::span<const Kind* const> body_kinds() {
-  static const Kind* const kinds[] = {&kind_of<SceneBody>(),  &shape_kind(),        &BodyShape::half_space(),
-                                      &BodyShape::sphere(),   &BodyShape::box(),    &BodyShape::capsule(),
-                                      &BodyShape::cylinder(), &BodyShape::cone(),   &kind_of<ScenePart>(),
-                                      &part_shape_kind(),     &kind_of<ScenePair>()};
+  static const Kind* const kinds[] = {
+      &kind_of<SceneBody>(), &shape_kind(),         &BodyShape::half_space(), &BodyShape::sphere(),
+      &BodyShape::box(),     &BodyShape::capsule(), &BodyShape::cylinder(),   &BodyShape::cone(),
+      &kind_of<ScenePart>(), &part_shape_kind(),    &kind_of<ScenePair>(),    &kind_of<SceneFracture>()};
   return kinds;
 }
 
