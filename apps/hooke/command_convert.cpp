@@ -1,4 +1,5 @@
 #include "hooke/command_line.h"
+#include "hooke/fracture.h"
 #include "hooke/geometry.h"
 #include "hooke/model_io.h"
 #include "hooke/model_options.h"
@@ -32,6 +33,19 @@ Result<Model> combine(const Model& model, const Combination& combination, const 
   return model_of(mesh.value());
 }
 
+/// Writes the cells of the model's solid, and says how many there are.
+int write_cells(const Model& model, const FractureDesc& desc, const std::string& output) {
+  const Result<SolidRepair> solid = repair_solid(model.mesh);
+  if (!solid) return report(solid.error());
+  const Result<Fracture> pieces = fracture(solid.value().mesh, desc);
+  if (!pieces) return report(pieces.error());
+  const auto written = export_cells(pieces.value(), output);
+  if (!written) return report(written.error());
+  std::printf("%s: %zu cells, %zu glued faces, %u seeds merged\n", output.c_str(),
+              pieces.value().cells.size(), pieces.value().bonds.size(), pieces.value().merged);
+  return kGood;
+}
+
 }  // namespace
 
 int command_convert(Arguments arguments) {
@@ -57,11 +71,20 @@ int command_convert(Arguments arguments) {
   auto* const operations = app.add_option_group("Solids", "One of these; both models must be closed");
   for (Combination& c : combinations) operations->add_option(c.option, c.other, c.help)->option_text("MODEL");
   operations->require_option(0, 1);
+  FractureDesc fracture_desc;
+  auto* const cells =
+      app.add_option("--fracture", fracture_desc.cells,
+                     "Write this many Voronoi cells of the solid, each as an object of OUT, an .obj")
+          ->option_text("N");
+  app.add_option("--fracture-seed", fracture_desc.seed, "Seed of their random numbers; 1 by default")
+      ->needs(cells)
+      ->option_text("N");
   app.footer(
       "Examples:\n"
       "  hooke convert scenes/models/lantern.3ds lantern.glb --fit 0.4\n"
       "  hooke convert scenes/models/crate.3ds crate.obj --up z --scale 0.01\n"
-      "  hooke convert scenes/models/crate.3ds --subtract scenes/models/lantern.3ds hollow.obj");
+      "  hooke convert scenes/models/crate.3ds --subtract scenes/models/lantern.3ds hollow.obj\n"
+      "  hooke convert scenes/models/crate.3ds pieces.obj --fracture 30");
   if (const auto code = parse(app, arguments)) return *code;
 
   const ImportOptions options = model_options.options();
@@ -70,6 +93,7 @@ int command_convert(Arguments arguments) {
     if (model && !c.other.empty()) model = combine(model.value(), c, options);
   }
   if (!model) return report(model.error());
+  if (cells->count() > 0) return write_cells(model.value(), fracture_desc, output);
   const auto written = export_model(model.value(), output);
   if (!written) return report(written.error());
   std::printf("%s: %zu vertices, %zu triangles, %zu materials\n", output.c_str(),

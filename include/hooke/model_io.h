@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/fracture.h"
 #include "hooke/math.h"
 #include "hooke/result.h"
 #include "hooke/shape.h"
@@ -118,6 +119,14 @@ struct ImportOptions {
 /// Errors: another ending, a file that cannot be written, a model without triangles, with indices or parts
 /// out of range, or with a coordinate that is not finite.
 [[nodiscard]] Result<void> export_model(const Model& model, const std::string& path);
+
+/// Writes the cells of a solid (hooke/fracture.h) as an .obj file, each as an object of its own: `cell_0`,
+/// ..., in the frame of the whole. Faces of the surface have the material `outside`, and what is seen only
+/// when the solid breaks has `inside`; both are in a .mtl file beside it. Files are written as by
+/// export_model.
+///
+/// Errors: another ending, a file that cannot be written.
+[[nodiscard]] Result<void> export_cells(const Fracture& fracture, const std::string& path);
 
 /// Makes a model of one gray material from triangles, flat-shaded where the surface turns more than `crease`
 /// [rad]. It is wound and cleaned as by import_model. Triangles with a bad index or a coordinate that is not

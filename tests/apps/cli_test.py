@@ -521,6 +521,24 @@ class Convert(Program):
         kept = PROJECT / "scenes/paper/models/rooms.glb"
         self.assertEqual((self.folder / "rooms.glb").read_bytes(), kept.read_bytes())
 
+    def test_the_cells_of_a_solid_are_named_objects_that_fill_it(self):
+        self.write_boxes("a.obj", ((0, 0, 0), (2, 1, 3)))
+        out, _ = self.hooke("convert", "a.obj", "cells.obj", "--fracture", 25, "--fracture-seed", 4)
+        cells = int(re.match(r"cells\.obj: (\d+) cells, \d+ glued faces, \d+ seeds merged\n", out).group(1))
+        self.assertGreater(cells, 20)
+        text = (self.folder / "cells.obj").read_text()
+        names = re.findall(r"^o (.*)$", text, re.M)
+        self.assertEqual(names, [f"cell_{i}" for i in range(cells)])
+        self.assertAlmostEqual(self.read_solid("cells.obj"), 6, places=4)
+        self.assertEqual((text.count("usemtl inside"), "newmtl inside" in (self.folder / "cells.mtl").read_text()),
+                         (cells, True))
+        self.hooke("convert", "a.obj", "again.obj", "--fracture", 25, "--fracture-seed", 4)
+        self.assertEqual((self.folder / "again.obj").read_text().replace("again", "cells"), text)
+        for arguments, complaint in ((["x.glb", "--fracture", 5], r"^x\.glb: cells are written as \.obj"),
+                                     (["x.obj", "--fracture", 0], "^cells: 0 is out of range"),
+                                     (["x.obj", "--fracture-seed", 5], "^hooke convert: ")):
+            self.assert_one_line(self.hooke("convert", "a.obj", *arguments, code=2)[1], complaint)
+
     def test_solids_that_cannot_be_joined(self):
         self.write_boxes("a.obj", ((0, 0, 0), (2, 2, 2)))
         self.write_boxes("open.obj", ((1, 1, 1), (3, 3, 3)), without=1)
