@@ -110,9 +110,43 @@ bool thread(hooke::World& world) {
   return agrees("force that broke the thread [N]", needed, 2 * kGravity, 0.01);
 }
 
+/// A bar of four glued slices, clamped at one end.
+bool shelf(hooke::World& world) {
+  hooke::MeshDesc bar = {.triangles = {{0, 4, 6},
+                                       {0, 6, 2},
+                                       {1, 3, 7},
+                                       {1, 7, 5},
+                                       {0, 1, 5},
+                                       {0, 5, 4},
+                                       {2, 6, 7},
+                                       {2, 7, 3},
+                                       {0, 2, 3},
+                                       {0, 3, 1},
+                                       {4, 5, 7},
+                                       {4, 7, 6}}};
+  for (const float z : {-0.05f, 0.05f}) {
+    for (const float y : {-0.05f, 0.05f}) {
+      for (const float x : {0.0f, 2.0f}) bar.positions.push_back({x, y, z});
+    }
+  }
+  const auto pieces =
+      hooke::fracture(bar, {.seeds = {{0.25, 0, 0}, {0.75, 0, 0}, {1.25, 0, 0}, {1.75, 0, 0}}});
+  if (!pieces) return false;
+  const auto body = hooke::add_fractured(world, pieces.value(),
+                                         {.kind = hooke::BodyKind::kDynamic, .position = {50, 0, 0}}, 8e5f);
+  if (!body) return false;
+  const auto clamp = world.add_hook(
+      {.kind = hooke::HookKind::kFixed, .b = {.body = body.value().bodies[0]}, .anchor = {50, 0, 0}});
+  if (!clamp) return false;
+  advance(world, 60);
+  const hooke::Vec3 torque = world.hook_force(body.value().hooks[0]).torque;
+  return agrees("moment of 1.5 m of the bar [N m]", torque.z, 10 * kGravity * 1.5 * 1.5 / 2, 0.01);
+}
+
 }  // namespace
 
 int main() {
   hooke::World world = hooke::World::create().value();
-  return pendulum(world) && door(world) && lift(world) && scale(world) && thread(world) ? 0 : 1;
+  return pendulum(world) && door(world) && lift(world) && scale(world) && thread(world) && shelf(world) ? 0
+                                                                                                        : 1;
 }
