@@ -2,6 +2,7 @@
 
 #include "hooke/fracture.h"
 
+#include "geometry/convex/convex_hull.h"
 #include "geometry/meshes.h"
 #include "geometry/solids.h"
 #include "geometry/triangle_mesh.h"
@@ -262,6 +263,28 @@ TEST_SUITE("geometry/fracture") {
     CHECK(one.cells[0].seed == 0);
     CHECK(one.bonds.empty());
     CHECK(volume_of(one) == doctest::Approx(1).epsilon(1e-12));
+  }
+
+  TEST_CASE("random hulls are divided without loss, also where many cells meet in one corner") {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (int trial = 0; trial < 60; ++trial) {
+      const double scale = trial % 3 == 0 ? 1e-3 : trial % 3 == 1 ? 1 : 1e3;
+      std::vector<Vec3> points;
+      for (int i = 0; i < 24; ++i) {
+        const double y = (trial % 2 == 0 ? 1 : 0.02) * number(random);
+        points.push_back(vector_cast<Real>(scale * DVec3{number(random), y, number(random)}));
+      }
+      const MeshDesc hull = geometry::mesh_of(geometry::make_convex_hull(points).value());
+      FractureDesc desc = {.cells = 40, .seed = static_cast<std::uint32_t>(trial)};
+      // Eight cells meet wherever seeds form a grid.
+      for (int i = 0; i < 64 && trial % 4 == 0; ++i)
+        desc.seeds.push_back(0.5 * scale * DVec3{i % 4 - 1.5, i / 4 % 4 - 1.5, i / 16 - 1.5});
+      const Fracture pieces = fracture(hull, desc).value();
+      CAPTURE(trial);
+      CHECK(volume_of(pieces) == doctest::Approx(volume_of(hull)).epsilon(1e-9));
+      for (const FractureCell& cell : pieces.cells) CHECK(geometry::validate_solid(cell.mesh).has_value());
+    }
   }
 
   TEST_CASE("the same description gives the same bits, and another seed other cells") {

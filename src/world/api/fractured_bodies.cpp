@@ -164,7 +164,11 @@ Result<FracturedBody> add_fractured(World& world, const Fracture& fracture, cons
     BodyDesc desc = describe_cell(fracture, i, whole);
     desc.shape.mesh = mesh.value();
     const Result<BodyId> body = world.add_body(desc);
-    if (!body) return error_of("cells", i, body.error());
+    if (!body) {
+      Error error = error_of("cells", i, body.error());
+      error.message += "; a larger `least_share` merges cells that are small or thin";
+      return error;
+    }
     made.bodies.push_back(body.value());
   }
   for (std::size_t i = 0; i < fracture.bonds.size(); ++i) {
