@@ -153,6 +153,7 @@ std::string beyond_bodies(const Scene& scene) {
   if (!scene.material_pairs.empty()) return "pairs of materials";
   for (const SceneBody& body : scene.objects.bodies) {
     if (body.desc.sensor || !body.desc.collides) return "bodies that others pass through";
+    if (body.fracture) return "bodies that break";
   }
   return {};
 }
