@@ -171,6 +171,7 @@ RopeDesc make_rope(Random& random, DVec3 place, Taste taste) {
   if (taste.may_drive && random.chance(0.1)) rope.repulsion_strength = random.real(0, 1e-5);
   if (taste.may_drive && random.chance(0.1)) rope.charge = random.real(-1, 1);
   rope.contact = make_contact(random);
+  rope.touches_surfaces = random.chance(0.2);
   return rope;
 }
 

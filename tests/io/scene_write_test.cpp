@@ -98,7 +98,7 @@ constexpr const char* kEverything = R"({
     {"name": "rope", "stepper": "verlet", "hook_point": [0, 3, 0], "direction": [0, -1, 0], "total_mass": 2,
      "masses": 9,
      "length_at_rest": 2, "stiffness": 1000, "inner_friction": 0.1, "air_friction": 0.2, "extension_max": 0.05, "strength": 700,
-     "stiffness_of": "segment", "axial_stiffness": 500, "bend_stiffness": 0.5, "touches_ropes": true,
+     "stiffness_of": "segment", "axial_stiffness": 500, "bend_stiffness": 0.5, "touches_ropes": true, "touches_surfaces": true,
      "repulsion_strength": 2e-7, "repulsion_range": 0.02, "twist_stiffness": 0.4,
      "twist": 3, "young_modulus": 1e9, "poisson_ratio": 0.25, "radius": 0.01, "drag_coefficient": 1, "charge": 1e-6,
      "velocity": [0, 0, 1], "loads": [{"point": 3, "mass": 0.5}, {"point": "last", "mass": 0}],
