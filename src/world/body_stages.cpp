@@ -304,14 +304,23 @@ void reset_if_not_finite(state::Hook& hook) {
 
 }  // namespace
 
-void finish_bodies(WorldData& world, Real dt) {
+std::uint32_t finish_bodies(WorldData& world, Real dt) {
   state::Tables& t = world.tables;
   for_bodies(world, [&](auto rows) { solver::finish_bodies(rows, t.bodies); });
   solver::finish_joints(*world.pool, dt, t.desc.substeps, t.bodies, world.derived.joints, t.hooks);
-  if (!world.frame.bodies_quarantined) return;
+  // Motion that is finite, but only just, has too large an angular momentum.
+  std::uint32_t count = 0;
+  for (const std::uint32_t body : world.frame.awake) {
+    if (is_finite(t.bodies.angular_momentum[body]) && is_finite(t.bodies.angular_velocity[body])) continue;
+    t.bodies.angular_momentum[body] = t.bodies.angular_velocity[body] = {};
+    t.bodies.motion[body].omega_scaled = {};
+    ++count;
+  }
+  if (!world.frame.bodies_quarantined && count == 0) return 0;
   // Otherwise what touched or held a quarantined body would send it back to quarantine in every step.
   for (state::Manifold& m : t.pairs.manifold) reset_if_not_finite(m);
   for (state::Hook& hook : t.hooks) reset_if_not_finite(hook);
+  return count;
 }
 
 void resolve_impacts(WorldData& world, Real h) {

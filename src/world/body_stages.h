@@ -83,8 +83,9 @@ void refresh_contacts(WorldData& world, Real h);
 void relax_body_contacts(WorldData& world);
 
 /// Ends a step of length `dt` [s]: poses of bodies follow their motion, and hooks get their mean forces. If
-/// some body was quarantined, contacts and hooks lose impulses that are not finite.
-void finish_bodies(WorldData& world, Real dt);
+/// some body was quarantined, contacts and hooks lose impulses that are not finite. Returns how many bodies
+/// turn so fast that their angular momentum is not finite; they are stopped.
+std::uint32_t finish_bodies(WorldData& world, Real dt);
 
 /// Stores the impulses of contacts after the last substep, for the warm start of the next step and for
 /// reports. Decides which islands are direct in the next step.

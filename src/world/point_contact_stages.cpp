@@ -65,6 +65,7 @@ void find_point_contacts(WorldData& world, double dt) {
   remove_contacts_of_gaps(world.tables);
   collision::find_rope_contacts(*world.pool, static_cast<Real>(dt), world.frame.rope_contacts, world.tables);
   collision::find_body_passes(world.tables, static_cast<Real>(dt), world.frame.body_passes);
+  world.frame.bodies_quarantined = false;
   world.frame.body_manifolds.clear();
   world.frame.backing_contacts.clear();
   HOOKE_VALIDATE(state::find_in_point_contacts(world.tables));
@@ -134,6 +135,7 @@ void stop_body_passes(WorldData& world, Real h) {
 }
 
 void hold_back_passes(WorldData& world, Real h) {
+  if (world.frame.bodies_quarantined) return;  // These are not where their substep began.
   const collision::HeldBack held = collision::hold_back_passes(*world.pool, h, world.frame.body_manifolds,
                                                                world.frame.body_passes, world.tables);
   world.frame.passes_held_back += held.moved;

@@ -97,7 +97,7 @@ void finish(WorldData& w, double dt, StepReport& report) {
   world::clamp_to_impact_times(w);
   world::hold_back_passes(
       w, static_cast<Real>(dt) / static_cast<Real>(w.tables.desc.substeps * w.tables.desc.particle_substeps));
-  world::finish_bodies(w, static_cast<Real>(dt));
+  report.rows_quarantined += world::finish_bodies(w, static_cast<Real>(dt));
   world::drop_broken_hooks(w);
   world::drop_broken_segments(w);
   world::put_to_sleep(w, static_cast<Real>(dt));

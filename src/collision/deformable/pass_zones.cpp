@@ -341,6 +341,7 @@ class PassZones {
     const Vec3 omega = zone.held ? Vec3{} : vector_cast<Real>(turn_rate_of(zone));
     const Vec3 moved = zone.held ? way_of_leader(zone) : way_of(place_of(points_ + body), zone);
     const BodyPassFinder::BodyStart& start = f_.body_start[body];
+    if (!is_finite(start.dx + moved) || !is_finite(start.theta_scaled + omega)) return;  // for quarantine
     state::MotionRecord& m = t_.bodies.motion[body];
     m.dx = start.dx + moved;
     m.v = (Real(1) / h_) * moved;
@@ -379,6 +380,7 @@ class PassZones {
     if (!(record.inverse_mass > Real(0))) return;
     const Zone& zone = zone_of(point);
     const Vec3 moved = zone.held ? way_with_leader(place_of(point), zone) : way_of(place_of(point), zone);
+    if (!is_finite(f_.start[point].x + moved)) return;
     t_.particles.position[point].x = f_.start[point].x + moved;
     record.v = (Real(1) / h_) * moved;
   }

@@ -43,7 +43,8 @@ Real solve_lane(const ContactLane& at, Real h, Bodies& bodies, ContactBlock& blo
     const Real speed = dot(n, b.v - a.v) + dot(j_b, b.omega_scaled) - dot(j_a, a.omega_scaled);
     const Real change = -(speed + std::max(gap, Real(0)) / h);
     const Real impulse = point.mass[at.lane] * change;
-    if (!(impulse > Real(0))) continue;
+    // What is about to be quarantined takes nothing with it.
+    if (!(impulse > Real(0)) || !std::isfinite(impulse)) continue;
     largest = std::max(largest, change);
     const bool is_free = !block.is_soft();
     move(row_a, (-block.w_a[at.lane] * impulse) * n, -impulse * j_a, is_free, bodies);

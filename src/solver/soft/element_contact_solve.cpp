@@ -6,6 +6,7 @@
 #include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hooke::solver {
 
@@ -60,6 +61,7 @@ Real solve_row(Real h, Real least, ElementContact& contact, state::Tables& t) {
   if (!(change > Real(0)) || !(w_normal > Real(0))) return Real(0);
 
   const Real pushed = change / w_normal;
+  if (!std::isfinite(pushed)) return Real(0);
   const Vec3 sliding = relative - speed * n;
   const Real rate = length(sliding);
   Vec3 impulse = pushed * n;
