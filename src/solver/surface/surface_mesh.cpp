@@ -162,6 +162,11 @@ class MeshBuilder {
     for (SurfaceTriangle& triangle : mesh.triangles) {
       for (std::uint32_t& edge : triangle.edge) edge = edge_row[edge];
     }
+    give_vertices_to_edges(mesh);
+  }
+
+  /// Lets the first edge of each vertex speak for it.
+  void give_vertices_to_edges(SurfaceMesh& mesh) const {
     std::vector<std::uint8_t> taken(vertex_count_, 0);
     for (SurfaceEdge& edge : mesh.edges) {
       for (std::size_t k = 0; k < 2; ++k) {
