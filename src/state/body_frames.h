@@ -44,13 +44,28 @@ inline bool is_gyroscopic_now(const Bodies& bodies, std::uint32_t row) {
   return is_gyroscopic(bodies.mass[row]) && !bodies.frozen_inertia[row].on;
 }
 
+/// How a body has moved since the step began, at some time within it.
+struct BodyMotion {
+  Vec3 dx = {};            ///< Of the center of mass [m].
+  Vec3 theta_scaled = {};  ///< Scaled rotation [sqrt(kg) m].
+  Quat rotation = {};      ///< As in Bodies::rotation.
+};
+
+inline BodyMotion motion_now(const Bodies& bodies, std::uint32_t row) {
+  return {bodies.motion[row].dx, bodies.motion[row].theta_scaled, bodies.rotation[row]};
+}
+
+/// Center of mass and rotation after that motion.
+inline Pose pose_after(const Bodies& bodies, std::uint32_t row, const BodyMotion& motion) {
+  const DVec3 center = bodies.center[row] + vector_cast<double>(motion.dx);
+  const bool turned = bodies.motion[row].inverse_mass > Real(0) && is_gyroscopic_now(bodies, row);
+  if (turned || motion.theta_scaled == Vec3{}) return {center, motion.rotation};
+  return {center, math::quaternion_of(bodies.scale[row] * motion.theta_scaled) * motion.rotation};
+}
+
 /// Center of mass and rotation in the middle of a step.
 inline Pose pose_now(const Bodies& bodies, std::uint32_t row) {
-  const MotionRecord& m = bodies.motion[row];
-  const DVec3 center = bodies.center[row] + vector_cast<double>(m.dx);
-  const bool turned = m.inverse_mass > Real(0) && is_gyroscopic_now(bodies, row);
-  if (turned || m.theta_scaled == Vec3{}) return {center, bodies.rotation[row]};
-  return {center, math::quaternion_of(bodies.scale[row] * m.theta_scaled) * bodies.rotation[row]};
+  return pose_after(bodies, row, motion_now(bodies, row));
 }
 
 /// Center of mass and rotation after `time` [s] more of motion_before_contacts.
@@ -61,11 +76,16 @@ inline Pose pose_after(const Bodies& bodies, std::uint32_t row, Real time) {
           math::quaternion_of(bodies.scale[row] * (time * motion.omega_scaled)) * now.rotation};
 }
 
-/// Displacement of a point of a body since the start of the step, to first order in the rotation.
+/// Displacement of a point of a body by that motion, to first order in the rotation.
+inline Vec3 displacement_of(const Bodies& bodies, std::uint32_t row, const BodyMotion& motion, Vec3 lever) {
+  const bool is_scaled = bodies.motion[row].inverse_mass > Real(0);
+  const Vec3 turn = is_scaled ? bodies.scale[row] * motion.theta_scaled : motion.theta_scaled;
+  return motion.dx + cross(turn, lever);
+}
+
+/// The same since the start of the step.
 inline Vec3 displacement_of(const Bodies& bodies, std::uint32_t row, Vec3 lever) {
-  const MotionRecord& m = bodies.motion[row];
-  const Vec3 turn = m.inverse_mass > Real(0) ? bodies.scale[row] * m.theta_scaled : m.theta_scaled;
-  return m.dx + cross(turn, lever);
+  return displacement_of(bodies, row, motion_now(bodies, row), lever);
 }
 
 /// Displacement of B's point relative to A's, at a point of a manifold.

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "base/lists_by_key.h"
 #include "state/tables.h"
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 /// \file
 /// Which manifolds a body has, for what asks by body.
@@ -15,18 +15,16 @@ namespace hooke::state {
 class BodyManifolds {
  public:
   /// Forgets everything; the next look lists them anew.
-  void clear() { first_.clear(); }
+  void clear() { rows_.clear(); }
 
   /// Lists the manifolds of all bodies, unless that has been done since clear().
   void list(const Tables& tables);
 
   /// Rows of the body's manifolds, in order. Bodies that do not give way have none.
-  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t body) const {
-    return std::span(row_).subspan(first_[body], first_[body + 1] - first_[body]);
-  }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t body) const { return rows_.of(body); }
 
  private:
-  std::vector<std::uint32_t> first_, row_;
+  base::ListsByKey<std::uint32_t> rows_;
 };
 
 }  // namespace hooke::state

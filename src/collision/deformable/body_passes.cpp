@@ -586,10 +586,8 @@ void begin_body_passes(const state::Tables& t, BodyPassFinder& finder) {
   if (finder.colliders.empty() || t.objects.empty()) return;
   finder.start = t.particles.position;
   finder.body_start.resize(t.bodies.motion.size());
-  for (std::size_t i = 0; i < finder.body_start.size(); ++i) {
-    const state::MotionRecord& m = t.bodies.motion[i];
-    finder.body_start[i] = {.dx = m.dx, .theta_scaled = m.theta_scaled, .rotation = t.bodies.rotation[i]};
-  }
+  for (std::uint32_t i = 0; i < finder.body_start.size(); ++i)
+    finder.body_start[i] = state::motion_now(t.bodies, i);
   place_body_passes(t, finder);
 }
 

@@ -6,6 +6,7 @@
 #include "collision/deformable/element_sweep.h"
 #include "geometry/box.h"
 #include "parallel/thread_pool.h"
+#include "state/body_frames.h"
 #include "state/tables.h"
 
 #include <array>
@@ -58,13 +59,6 @@ struct BodyPassFinder {
     Pose begin = {};         ///< Center of mass and rotation of the body when that began.
   };
 
-  /// Where a body was when the particle substep began.
-  struct BodyStart {
-    Vec3 dx = {};            ///< Since the start of the step [m].
-    Vec3 theta_scaled = {};  ///< Scaled rotation since then [sqrt(kg) m].
-    Quat rotation = {};      ///< As in Bodies::rotation.
-  };
-
   /// What an object does in a step.
   struct Object {
     std::uint32_t first = 0, end = 0;  ///< Rows of `elements`.
@@ -98,7 +92,7 @@ struct BodyPassFinder {
   std::vector<Real> body_gone;   ///< By body: upper bound of how far it has gone in this step [m].
   std::vector<state::ElementContact> passes;  ///< Those that would meet within the substep, by time.
   std::vector<state::PositionRecord> start;   ///< By particle: where it began the particle substep [m].
-  std::vector<BodyStart> body_start;          ///< By body.
+  std::vector<state::BodyMotion> body_start;  ///< By body, when the particle substep began.
   std::vector<std::uint8_t> flags;            ///< By candidate: scratch memory.
   std::vector<std::uint32_t> suspects;        ///< Scratch memory: candidates that may meet.
   std::vector<std::uint32_t> suspect_pair;    ///< Scratch memory.

@@ -188,14 +188,10 @@ class PassZones {
     if (place.body == state::HookPlace::kWorld) return {.begin = place.anchor};
     const Pose begin = begin_of(place.body);
     const Pose now = state::pose_now(t_.bodies, place.body);
-    end.begin = begin.position + rotate(in_double(begin.rotation), place.anchor);
-    end.moved = vector_cast<Real>(now.position + rotate(in_double(now.rotation), place.anchor) - end.begin);
+    end.begin = begin.position + rotate(math::in_double(begin.rotation), place.anchor);
+    end.moved =
+        vector_cast<Real>(now.position + rotate(math::in_double(now.rotation), place.anchor) - end.begin);
     return end;
-  }
-
-  static Quaternion<double> in_double(const Quat& q) {
-    return {static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z),
-            static_cast<double>(q.w)};
   }
 
   template <class Visit>
@@ -210,36 +206,25 @@ class PassZones {
     const bool holds = hook.holds_point() && !hook.broken && hook.giving == state::Hook::Giving::kHolds &&
                        hook.freedom[0].locked && hook.freedom[1].locked && hook.freedom[2].locked;
     if (!holds) return false;
-    bool any_in = false;
-    bool any_out = false;
-    std::uint32_t root = kNobody;
-    for (const state::HookPlace* place : {&hook.a, &hook.b}) {
-      const bool is_world = !place->is_point() && place->body == state::HookPlace::kWorld;
-      for_members(*place, [&](std::uint32_t member) {
-        any_in = any_in || is_in_[member] != 0;
-        any_out = any_out || is_in_[member] == 0 || (root != kNobody && sets_.root(member) != root);
-        root = sets_.root(member);
-      });
-      if (!is_world) continue;
-      for_members(&hook.a == place ? hook.b : hook.a, [&](std::uint32_t member) {
-        any_out = any_out || is_in_[member] == 0 || !brought_[member].is_anchored;
-      });
-    }
-    if (!any_in || !any_out) return false;
+    const bool to_world = !hook.other_end().is_point() && hook.other_end().body == state::HookPlace::kWorld;
+    tied_.clear();
+    for (const state::HookPlace* place : {&hook.a, &hook.b})
+      for_members(*place, [&](std::uint32_t member) { tied_.push_back(member); });
+    const auto is_in = [&](std::uint32_t member) { return is_in_[member] != 0; };
+    const auto is_with_first = [&](std::uint32_t member) {
+      return is_in(member) && sets_.root(member) == sets_.root(tied_[0]) &&
+             (!to_world || brought_[member].is_anchored);
+    };
+    if (std::none_of(tied_.begin(), tied_.end(), is_in)) return false;
+    if (std::all_of(tied_.begin(), tied_.end(), is_with_first)) return false;
     const End a = end_of(hook.a);
     const End b = end_of(hook.b);
     const Vec3 gap = vector_cast<Real>(b.begin - a.begin);
     if (length(gap + b.moved - a.moved) < length(gap) + kPressedOverlap) return false;
-    const bool is_world = !hook.a.is_point() || !hook.b.is_point();
-    const bool anchored = is_world && hook.other_end().body == state::HookPlace::kWorld;
-    std::uint32_t first = kNobody;
-    for (const state::HookPlace* place : {&hook.a, &hook.b}) {
-      for_members(*place, [&](std::uint32_t member) {
-        include(member);
-        brought_[member].is_anchored = brought_[member].is_anchored || anchored;
-        if (first == kNobody) first = member;
-        sets_.merge(first, member);
-      });
+    for (const std::uint32_t member : tied_) {
+      include(member);
+      brought_[member].is_anchored = brought_[member].is_anchored || to_world;
+      sets_.merge(tied_[0], member);
     }
     return true;
   }
@@ -259,20 +244,12 @@ class PassZones {
 
   /// How far a point of a body had gone since the step began when the particle substep began.
   [[nodiscard]] Vec3 way_at_start(std::uint32_t body, Vec3 anchor) const {
-    const BodyPassFinder::BodyStart& start = f_.body_start[body];
-    const bool is_scaled = t_.bodies.motion[body].inverse_mass > Real(0);
-    const Vec3 turn = is_scaled ? t_.bodies.scale[body] * start.theta_scaled : start.theta_scaled;
-    return start.dx + cross(turn, anchor);
+    return state::displacement_of(t_.bodies, body, f_.body_start[body], anchor);
   }
 
   /// Pose of a body when the particle substep began.
   [[nodiscard]] Pose begin_of(std::uint32_t body) const {
-    const BodyPassFinder::BodyStart& start = f_.body_start[body];
-    const bool turned =
-        t_.bodies.motion[body].inverse_mass > Real(0) && state::is_gyroscopic_now(t_.bodies, body);
-    const DVec3 center = t_.bodies.center[body] + vector_cast<double>(start.dx);
-    if (turned || start.theta_scaled == Vec3{}) return {center, start.rotation};
-    return {center, math::quaternion_of(t_.bodies.scale[body] * start.theta_scaled) * start.rotation};
+    return state::pose_after(t_.bodies, body, f_.body_start[body]);
   }
 
   [[nodiscard]] DVec3 place_of(std::uint32_t member) const {
@@ -340,7 +317,7 @@ class PassZones {
     // In a zone that is held it keeps its rotation: it would go on to turn faster, held in place.
     const Vec3 omega = zone.held ? Vec3{} : vector_cast<Real>(turn_rate_of(zone));
     const Vec3 moved = zone.held ? way_of_leader(zone) : way_of(place_of(points_ + body), zone);
-    const BodyPassFinder::BodyStart& start = f_.body_start[body];
+    const state::BodyMotion& start = f_.body_start[body];
     if (!is_finite(start.dx + moved) || !is_finite(start.theta_scaled + omega)) return;  // for quarantine
     state::MotionRecord& m = t_.bodies.motion[body];
     m.dx = start.dx + moved;
@@ -412,8 +389,9 @@ class PassZones {
   base::DisjointSets sets_;
   std::vector<std::uint8_t> is_in_;
   std::vector<std::uint32_t> members_;
-  std::vector<Member> brought_;  ///< By member.
-  std::vector<Zone> zones_;      ///< By root.
+  std::vector<std::uint32_t> tied_;  ///< Scratch memory: what a hook ties.
+  std::vector<Member> brought_;      ///< By member.
+  std::vector<Zone> zones_;          ///< By root.
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "geometry/fracture/fracture_seeds.h"
 
 #include "base/disjoint_sets.h"
+#include "base/splitmix.h"
 #include "geometry/box.h"
 #include "geometry/triangle_mesh.h"
 
@@ -26,18 +27,12 @@ class SeedNumbers {
  public:
   explicit SeedNumbers(std::uint32_t seed) : state_(seed) { next(); }
 
-  double uniform() {
-    constexpr double kUnit = 1.0 / 9007199254740992.0;  // 2^-53
-    return static_cast<double>(next() >> 11U) * kUnit;
-  }
+  double uniform() { return base::unit_number(next()); }
 
  private:
   std::uint64_t next() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t word = state_;
-    word = (word ^ (word >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    word = (word ^ (word >> 27U)) * 0x94D049BB133111EBULL;
-    return word ^ (word >> 31U);
+    state_ += base::kSplitmixStep;
+    return base::splitmix(state_);
   }
 
   std::uint64_t state_;

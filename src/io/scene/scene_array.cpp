@@ -1,23 +1,20 @@
 #include "hooke/scene_io.h"
 
+#include "base/splitmix.h"
+
 #include <algorithm>
 
 namespace hooke {
 
 namespace {
 
-/// This is splitmix64 (Steele et al. 2014), which gives the same numbers on every machine.
 std::uint64_t mixed(std::uint64_t word) {
-  word += 0x9E3779B97F4A7C15ULL;
-  word = (word ^ (word >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  word = (word ^ (word >> 27U)) * 0x94D049BB133111EBULL;
-  return word ^ (word >> 31U);
+  return base::splitmix(word + base::kSplitmixStep);
 }
 
-/// Returns a number uniform in [low, high); the upper 53 bits are exact in a double.
+/// Returns a number uniform in [low, high).
 double uniform(std::uint64_t word, double low, double high) {
-  constexpr double kUnit = 1.0 / 9007199254740992.0;  // 2^-53
-  return low + (high - low) * (static_cast<double>(mixed(word) >> 11U) * kUnit);
+  return low + (high - low) * base::unit_number(mixed(word));
 }
 
 std::size_t positive(std::int32_t n) {

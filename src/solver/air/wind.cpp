@@ -1,16 +1,12 @@
 #include "solver/air/wind.h"
 
+#include "base/splitmix.h"
+
 #include <cmath>
 
 namespace hooke::solver {
 
 namespace {
-
-std::uint64_t mix(std::uint64_t z) {  // splitmix64, Steele et al. 2014
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-  return z ^ (z >> 31);
-}
 
 struct Gust {
   double along = 0, across = 0;  ///< Independent, each in [-1, 1].
@@ -50,7 +46,7 @@ Gust smooth_gust(const WindDesc& wind, DVec3 place, double time) {
     double weight = 1.0;
     for (int axis = 0; axis < 4; ++axis) {
       const int up = (corner >> axis) & 1;
-      key = mix(key * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(cells[axis].index + up));
+      key = base::splitmix(key * base::kSplitmixStep + static_cast<std::uint64_t>(cells[axis].index + up));
       weight *= up != 0 ? cells[axis].weight : 1.0 - cells[axis].weight;
     }
     const Gust gust = gust_of(key);
@@ -62,7 +58,7 @@ Gust smooth_gust(const WindDesc& wind, DVec3 place, double time) {
 
 /// The paper's eq. 9: rand(1..100) drawn for each step, here divided by 100.
 Gust paper_gust(const WindDesc& wind, std::uint64_t step) {
-  const std::uint64_t bits = mix(mix(wind.seed) + step);
+  const std::uint64_t bits = base::splitmix(base::splitmix(wind.seed) + step);
   return {0.01 * static_cast<double>(1 + bits % 100), 0.01 * static_cast<double>(1 + (bits >> 32) % 100)};
 }
 

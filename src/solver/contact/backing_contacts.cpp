@@ -60,21 +60,16 @@ Real solve_lane(const ContactLane& at, Real h, Bodies& bodies, ContactBlock& blo
 }  // namespace
 
 void BackingContacts::list(const Bodies& bodies, const BodyContacts& contacts) {
-  const auto for_ends = [&](auto visit) {
+  lanes_.fill(bodies.motion.size(), [&](auto visit) {
     for (std::size_t i = 0; i < contacts.blocks.size(); ++i) {
       const ContactBlock& block = contacts.blocks[i];
       for (int lane = 0; lane < block.count; ++lane) {
-        visit(block.record_a[lane] / 16, ContactLane{.block = static_cast<int>(i), .lane = lane});
-        if (!block.anchored)
-          visit(block.record_b[lane] / 16, ContactLane{.block = static_cast<int>(i), .lane = lane});
+        const ContactLane at = {.block = static_cast<int>(i), .lane = lane};
+        visit(block.record_a[lane] / 16, at);
+        if (!block.anchored) visit(block.record_b[lane] / 16, at);
       }
     }
-  };
-  first_.assign(bodies.motion.size() + 2, 0);
-  for_ends([&](std::uint32_t body, const ContactLane&) { ++first_[body + 2]; });
-  for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  lanes_.resize(first_.back());
-  for_ends([&](std::uint32_t body, const ContactLane& at) { lanes_[first_[body + 1]++] = at; });
+  });
   reached_.assign(bodies.motion.size(), 0);
   is_active_.assign(contacts.blocks.size() * kContactLanes, 0);
   bodies_.clear();
@@ -83,7 +78,7 @@ void BackingContacts::list(const Bodies& bodies, const BodyContacts& contacts) {
 
 void BackingContacts::begin(Real h, const Bodies& bodies, const BodyContacts& contacts) {
   h_ = h;
-  if (first_.empty()) list(bodies, contacts);
+  if (lanes_.empty()) list(bodies, contacts);
   for (const std::uint32_t body : bodies_) reached_[body] = 0;
   for (const ContactLane& at : active_) is_active_[number_of(at)] = 0;
   bodies_.clear();
@@ -94,9 +89,9 @@ void BackingContacts::reach(std::uint32_t body) {
   if (reached_[body] != 0) return;
   reached_[body] = 1;
   bodies_.push_back(body);
-  for (std::uint32_t i = first_[body]; i < first_[body + 1]; ++i) {
-    std::uint8_t& is_active = is_active_[number_of(lanes_[i])];
-    if (is_active == 0) active_.push_back(lanes_[i]);
+  for (const ContactLane& at : lanes_.of(body)) {
+    std::uint8_t& is_active = is_active_[number_of(at)];
+    if (is_active == 0) active_.push_back(at);
     is_active = 1;
   }
 }

@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include "base/lists_by_key.h"
 #include "solver/contact/body_contacts.h"
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace hooke::solver {
 class BackingContacts {
  public:
   /// Begins a step, with other contacts.
-  void clear() { first_.clear(); }
+  void clear() { lanes_.clear(); }
 
   /// Begins a particle substep of `h` [s]: no body has been pushed yet.
   void begin(Real h, const state::Bodies& bodies, const BodyContacts& contacts);
@@ -34,8 +35,7 @@ class BackingContacts {
   void list(const state::Bodies& bodies, const BodyContacts& contacts);
 
   Real h_ = Real(0);
-  std::vector<std::uint32_t> first_;  ///< By body: row of `lanes_`.
-  std::vector<ContactLane> lanes_;
+  base::ListsByKey<ContactLane> lanes_;  ///< By body.
   std::vector<std::uint8_t> reached_;    ///< By body.
   std::vector<std::uint32_t> bodies_;    ///< Those that are reached.
   std::vector<ContactLane> active_;      ///< Contacts of these.

@@ -1,5 +1,6 @@
 #include "solver/contact/stop_passes.h"
 
+#include "base/sort_unique.h"
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
 #include "solver/soft/soft_tuning.h"
@@ -18,8 +19,7 @@ void stop_passes(Real h, std::span<state::ElementContact> passes, BackingContact
   std::vector<std::uint32_t> points;
   for (const state::ElementContact& pass : passes)
     points.insert(points.end(), pass.particle.begin(), pass.particle.begin() + pass.count);
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  base::sort_unique(points);
   Real enough = Real(0);
   for (int sweep = 0; sweep < kMostPassSweeps; ++sweep) {
     Real largest = Real(0);
