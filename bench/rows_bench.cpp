@@ -62,7 +62,9 @@ void isometric_bends(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
   const state::Bends list = bench::wave_cloth(cloth, true);
   solver::IsometricBendBlocks blocks;
-  solver::build_isometric_bend_blocks(bench::owner_of_all(cloth, list), list, cloth.springs, blocks);
+  solver::TakenRows taken = {std::vector<std::uint8_t>(static_cast<std::size_t>(cloth.springs.count()), 0),
+                             std::vector<std::uint8_t>(static_cast<std::size_t>(list.count()), 0)};
+  solver::build_isometric_bend_blocks(bench::owner_of_all(cloth, list), list, cloth.springs, taken, blocks);
   solver::prepare_isometric_bends(blocks, kSubstep);
   for (auto _ : state) {
     for (const solver::IsometricBendPass& pass : blocks.passes) {

@@ -86,6 +86,7 @@ Rows balloon(const CheckSetting& setting);
 Rows supported_plate(const CheckSetting& setting);
 Rows tethered_balloon(const CheckSetting& setting);
 Rows overhanging_cloth(const CheckSetting& setting);
+Rows peirce_strips(const CheckSetting& setting);
 Rows cusick_drape(const CheckSetting& setting);
 Rows flag_flutter(const CheckSetting& setting);
 Rows picture_frame(const CheckSetting& setting);

@@ -113,7 +113,7 @@ std::vector<CheckCase> cases_of_soft_matter() {
   };
 }
 
-/// These are V81 to V95: water and air, how the step affects an answer, and structures.
+/// These are V81 to V96: water and air, how the step affects an answer, and structures.
 std::vector<CheckCase> cases_of_surroundings_and_time() {
   return {
       {"V81", "Floating bodies", floating_bodies_in_water},
@@ -124,6 +124,7 @@ std::vector<CheckCase> cases_of_surroundings_and_time() {
       {"V92", "Overload", overload, 2e-4, 1.0 / 60},
       {"V94", "The paper's limits of stability", stability, 1.0 / 60},
       {"V95", "Truss", trusses},
+      {"V96", "Strips of cloth under their own weight", peirce_strips},
   };
 }
 

@@ -133,7 +133,7 @@ std::optional<RunWarning> softness(const Scene& scene, const SceneCloth& cloth) 
   const ClothDesc& desc = cloth.desc;
   const double cell = cell_of(cloth);
   const double rigidity = in_double(desc.bend_stiffness);
-  const bool has_bends = desc.bend == ClothDesc::Bend::kAngle || desc.bend == ClothDesc::Bend::kIsometric;
+  const bool has_bends = desc.bend != ClothDesc::Bend::kSpring && desc.bend != ClothDesc::Bend::kNone;
   if (!(cell > 0) || !has_bends || !(rigidity > 0)) return std::nullopt;
   const double area = in_double(desc.width) * in_double(desc.height);
   const double density = desc.total_mass ? in_double(*desc.total_mass) / area : in_double(desc.areal_density);

@@ -415,6 +415,11 @@ struct ClothDesc {
     /// The curvature at each inner edge; `bend_stiffness` is in N m. It suits cloth that is flat at rest and
     /// hardly stretches: it needs no angle, and half the time of kAngle.
     kIsometric,
+    /// The curvature along rows and columns of a grid, and its twist; `bend_stiffness` is in N m, the
+    /// flexural rigidity of a plate whose Poisson's ratio is 0, in any direction. Each row and each column is
+    /// bent as a whole, so that however stiff it is, and however light its points are, it has the stiffness
+    /// it is given. A mesh has no rows: it resists bending as by kAngle, as does a grid with a `yield_angle`.
+    kYarn,
   };
 
   int columns = 2;    ///< Number of points along `column_direction`. [2, 4096]
@@ -439,15 +444,16 @@ struct ClothDesc {
   Real stretch_stiffness = Real(1e4);
   Real shear_stiffness = Real(2e3);  ///< Stiffness of each spring across a cell or a pair of triangles [N/m].
   /// Resistance to bending, in the unit that `bend` says; in N m, the flexural rigidity of a sheet that bends
-  /// about lines across it. Diagonals fold, too: a strip with free sides bends by up to a quarter more (hooke
-  /// check I23).
+  /// about lines across it. By kAngle and kIsometric diagonals fold, too: a strip with free sides bends by up
+  /// to a quarter more (hooke check I23), and one pass over light points that are much stiffer does not hold
+  /// them.
   Real bend_stiffness = Real(1e-4);
   /// Damping of each stretch and shear spring [N s/m]. It counts as at most ten times the spring's stiffness
   /// times a substep, and at most half the mass of a point over a substep.
   Real damping = Real(0);
   Real bend_damping = Real(0);  ///< Damping of each bend, over `bend_stiffness` [s].
-  /// Angle [rad], positive, or kRigid, for Bend::kAngle only: what a pair of triangles is bent beyond it from
-  /// its form at rest, it keeps as a fold.
+  /// Angle [rad], positive, or kRigid, for Bend::kAngle, and for kYarn, which is kAngle then: what a pair of
+  /// triangles is bent beyond it from its form at rest, it keeps as a fold.
   Real yield_angle = kRigid;
   /// Force per width that the cloth can take [N/m], positive; any by default. It tears where the strain of
   /// its triangles times `stretch_stiffness`, as a mean at a point, exceeds this: the point splits, across
@@ -458,7 +464,7 @@ struct ClothDesc {
   std::optional<Real> strength = {};
   /// The strain that it can take, positive, in place of `strength`, or besides; the smaller one counts.
   std::optional<Real> tear_strain = {};
-  Bend bend = Bend::kAngle;     ///< By what the cloth resists bending.
+  Bend bend = Bend::kYarn;      ///< By what the cloth resists bending.
   Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
   /// Whether points stay within their rest distance of the pins, whatever pulls at them (tethers). If it is
   /// not set, they do in cloth that can neither burst nor tear and has an `extension_max`, or would stretch

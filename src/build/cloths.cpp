@@ -57,7 +57,7 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
                                normalize(vector_cast<double>(desc.row_direction)));
     checks.require(length(normal) > 1e-3, "row_direction", "must not be zero or along column_direction");
   }
-  checks.require(desc.bend <= ClothDesc::Bend::kIsometric, "bend", "must be one of ClothDesc::Bend")
+  checks.require(desc.bend <= ClothDesc::Bend::kYarn, "bend", "must be one of ClothDesc::Bend")
       .place("position", desc.position)
       .require(is_rotation(desc.rotation), "rotation", "must be finite and not zero")
       .in_range("areal_density", static_cast<double>(desc.areal_density), 1e-9, 1e9)
@@ -68,8 +68,9 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
       .up_to("damping", static_cast<double>(desc.damping), limits::kResistance)
       .up_to("bend_damping", static_cast<double>(desc.bend_damping), limits::kResistance)
       .stiffness("yield_angle", static_cast<double>(desc.yield_angle))
-      .require(desc.yield_angle == kRigid || desc.bend == ClothDesc::Bend::kAngle, "yield_angle",
-               "needs bends by angle")
+      .require(desc.yield_angle == kRigid || desc.bend == ClothDesc::Bend::kAngle ||
+                   desc.bend == ClothDesc::Bend::kYarn,
+               "yield_angle", "needs bends by angle")
       .stiffness("extension_max", static_cast<double>(desc.extension_max))
       .up_to("drag_coefficient", static_cast<double>(desc.drag_coefficient), 1e6)
       .up_to("lift_coefficient", static_cast<double>(desc.lift_coefficient), 1e6)
@@ -263,10 +264,8 @@ Result<void> check_flat(const Surface& s) {
 /// length |e| across strips of the width (A_1 + A_2) / |e| then bend a sheet of squares about its lines, and
 /// one of equilateral triangles about any line (Seung and Nelson 1988), as a plate of that rigidity does. An
 /// isometric bend, |q| = |e| theta, has the same energy with a stiffness B / (A_1 + A_2).
-void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
+void append_hinges(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
   const bool isometric = desc.bend == ClothDesc::Bend::kIsometric;
-  if (!isometric && desc.bend != ClothDesc::Bend::kAngle) return;
-  if (!(desc.bend_stiffness > Real(0))) return;
   state::Deformable& object = tables.objects.back();
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
     const EdgeSides& sides = s.topology.edge_sides[e];
@@ -300,6 +299,72 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
     tables.bends.weights.push_back(weights);
     ++object.bends.count;
   }
+}
+
+/// A row that is isometric in form.
+struct CurvatureRow {
+  std::array<std::uint32_t, 4> at = {};  ///< Both ends of an edge, then both wings, as points of the surface.
+  std::array<double, 4> weights = {};
+  double stiffness = 0;  ///< [N/m] over the square of the unit of the weights.
+};
+
+void append_curvature(const CurvatureRow& row, const ClothDesc& desc, state::Tables& tables) {
+  state::Deformable& object = tables.objects.back();
+  const auto at = [&](int k) { return row_of(tables, object, row.at[static_cast<std::size_t>(k)]); };
+  tables.bends.stencil.push_back({at(0), at(1), at(2), at(3)});
+  tables.bends.rest_angle.push_back(Real(0));
+  tables.bends.stiffness.push_back(static_cast<Real>(row.stiffness));
+  tables.bends.damping.push_back(desc.bend_damping);
+  std::array<Real, 4> weights = {};
+  for (std::size_t k = 0; k < 4; ++k) weights[k] = static_cast<Real>(row.weights[k]);
+  tables.bends.weights.push_back(weights);
+  ++object.bends.count;
+}
+
+/// Appends what gives a grid the energy B (c_x^2 + c_y^2 + 2 c_xy^2) / 2 per area, that of a plate of the
+/// flexural rigidity B whose Poisson's ratio is 0. The curvature c_x at a point is the change of direction
+/// along its row over the length l of a cell; it counts for an area of l and half the cells on both sides of
+/// the row. The twist c_xy of a cell of the area A is (x_0 + x_3 - x_1 - x_2) / A.
+void append_bends_of_grid(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
+  const auto rigidity = static_cast<double>(desc.bend_stiffness);
+  const auto point = [&](int column, int row) {
+    return static_cast<std::uint32_t>(row * s.columns + column);
+  };
+  const DVec3 along = s.points[point(1, 0)] - s.points[point(0, 0)];
+  const DVec3 down = s.points[point(0, 1)] - s.points[point(0, 0)];
+  const double area = length(cross(along, down));
+  const auto bend = [&](std::uint32_t at, std::uint32_t beside, std::uint32_t stride, double l, bool at_rim) {
+    const double width = (at_rim ? 0.5 : 1.0) * area / l;
+    append_curvature({.at = {at, beside, at - stride, at + stride},
+                      .weights = {-2 / l, 0, 1 / l, 1 / l},
+                      .stiffness = rigidity * width / l},
+                     desc, tables);
+  };
+  const auto stride = static_cast<std::uint32_t>(s.columns);
+  for (int row = 0; row < s.rows; ++row) {
+    for (int column = 0; column < s.columns; ++column) {
+      const std::uint32_t at = point(column, row);
+      const bool first_row = row == 0, last_row = row + 1 == s.rows;
+      const bool first_column = column == 0, last_column = column + 1 == s.columns;
+      if (!first_column && !last_column)
+        bend(at, last_row ? at - stride : at + stride, 1, length(along), first_row || last_row);
+      if (!first_row && !last_row)
+        bend(at, last_column ? at - 1 : at + 1, stride, length(down), first_column || last_column);
+      if (last_row || last_column) continue;
+      append_curvature({.at = {at, at + stride + 1, at + 1, at + stride},
+                        .weights = {1, 1, -1, -1},
+                        .stiffness = 2 * rigidity / area},
+                       desc, tables);
+    }
+  }
+}
+
+void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
+  using Bend = ClothDesc::Bend;
+  if (!(desc.bend_stiffness > Real(0)) || desc.bend == Bend::kSpring || desc.bend == Bend::kNone) return;
+  if (desc.bend == Bend::kYarn && s.is_grid && desc.yield_angle == kRigid)
+    return append_bends_of_grid(s, desc, tables);
+  append_hinges(s, desc, tables);
 }
 
 void append_triangles(const Surface& s, double areal_density, state::Tables& tables) {

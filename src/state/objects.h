@@ -51,7 +51,7 @@ using NamedPlaces = std::vector<NamedPlace>;
 /// x_b - x_a, x_c - x_a, x_d - x_a of each tetrahedron when it was made [m].
 using RestEdges = std::vector<std::array<Vec3, 3>>;
 
-/// The rest shape of a solid that is solved by shape matching (solver/soft/shape_matching.h). It never
+/// The rest shape of a solid that is solved by shape matching (solver/solid/shape_matching.h). It never
 /// changes after it was made.
 struct RestShape {
   std::vector<DVec3> place;  ///< Rest position of each row, from the center of mass [m].

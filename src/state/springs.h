@@ -2,6 +2,8 @@
 
 #include "hooke/math.h"
 
+#include "state/particles.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -55,6 +57,9 @@ struct Springs {
 };
 
 /// One row per inner edge that resists folding: by the angle between its triangles, or as an isometric bend.
+/// A woven cloth has rows along its yarns in place of these, isometric in form: at each inner point of a
+/// yarn, with the points before and behind it as wings, which resists a change of direction; and for each
+/// cell, with its corners, which resists twist.
 struct Bends {
   struct Stencil {
     std::uint32_t edge_a, edge_b;  ///< Ends of the shared edge.
@@ -66,12 +71,17 @@ struct Bends {
                                  ///< the energy k |q|^2 / 2 of an isometric bend.
   std::vector<Real> damping;     ///< c [N m s / rad] of the angle; for an isometric bend tau = c / k [s], of
                                  ///< |q|.
-  std::vector<std::array<Real, 4>> weights;  ///< Weights of elements::isometric_bend; all zero for a bend by
-                                             ///< angle.
+  std::vector<std::array<Real, 4>> weights;  ///< Weights of elements::isometric_bend, or of a row of a woven
+                                             ///< cloth; all zero for a bend by angle.
 
   [[nodiscard]] int count() const { return static_cast<int>(stencil.size()); }
   /// An isometric bend never has a zero weight at a wing.
   [[nodiscard]] bool is_isometric(std::size_t row) const { return weights[row][2] != Real(0); }
+  /// Whether a row resists bending along a yarn, at edge_a between its wings. Such a row alone has the weight
+  /// zero at edge_b, a point beside edge_a.
+  [[nodiscard]] bool is_along_yarn(std::size_t row) const {
+    return is_isometric(row) && weights[row][1] == Real(0);
+  }
   [[nodiscard]] std::array<double, 4> weights_of(std::size_t row) const {
     const auto& k = weights[row];
     return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2]),
@@ -87,6 +97,19 @@ struct Bends {
     visit(self.weights);
   }
 };
+
+/// Stiffness of a bend: twice as much along a yarn where one thing holds the link on one side, for then only
+/// the half that belongs to the other link bends.
+[[nodiscard]] inline Real stiffness_beside_clamp(const Bends& bends, std::size_t row,
+                                                 const Particles& particles) {
+  const Bends::Stencil& s = bends.stencil[row];
+  const auto is_held = [&](std::uint32_t particle) {
+    return !(particles.velocity[particle].inverse_mass > Real(0));
+  };
+  const bool clamped =
+      bends.is_along_yarn(row) && is_held(s.edge_a) && is_held(s.wing_a) != is_held(s.wing_b);
+  return clamped ? Real(2) * bends.stiffness[row] : bends.stiffness[row];
+}
 
 /// Triangles of cloths, which the wind pushes and which are drawn.
 struct Triangles {

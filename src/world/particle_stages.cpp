@@ -5,9 +5,9 @@
 #include "solver/check_routes.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/pressed_points.h"
-#include "solver/soft/shape_matching.h"
 #include "solver/soft/soft_tuning.h"
 #include "solver/soft/spring_solve.h"
+#include "solver/solid/shape_matching.h"
 #include "solver/solid/stiff_solution.h"
 #include "solver/solid/tetrahedron_solve.h"
 #include "solver/surface/joined_solids.h"
@@ -315,11 +315,25 @@ void solve_springs(WorldData& world, Real h, state::SpringClass first, state::Sp
   });
 }
 
+void solve_yarns(WorldData& world) {
+  for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
+    for (const solver::YarnPass& pass : group.yarns.passes) {
+      division.for_rows(pass.first, pass.end, 1, [&](Range blocks) {
+        solver::solve_yarns(group.yarns, pass, blocks, world.tables.particles);
+      });
+    }
+  });
+}
+
 void solve_bends(WorldData& world) {
   state::Particles& particles = world.tables.particles;
-  for_soft_groups(world, [&particles](const solver::SoftGroup& group, Division division) {
+  for_soft_groups(world, [&particles](solver::SoftGroup& group, Division division) {
     solve_passes(group.bends, division, kBlockGrain, particles, solver::solve_bends);
     solve_passes(group.isometric_bends, division, kBlockGrain, particles, solver::solve_isometric_bends);
+    for (const solver::YarnPass& pass : group.yarns.passes) {
+      division.for_rows(pass.first, pass.end, 1,
+                        [&](Range blocks) { solver::bend_yarns(group.yarns, pass, blocks, particles); });
+    }
   });
 }
 

@@ -21,6 +21,9 @@ void begin_step(WorldData& world, double dt);
 /// because both need the velocities from before.
 void begin_particle_substep(WorldData& world, Real h);
 
+/// Solves the yarns of woven cloths (solver/soft/yarns.h).
+void solve_yarns(WorldData& world);
+
 /// The first function solves the springs of the classes from `first` to `last`. The second solves bends and
 /// isometric bending elements, whose springs belong to them. Rows of one pass share no particle, so their
 /// order does not matter; passes follow one another.

@@ -48,9 +48,9 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_step(w, dt);
 }
 
-/// Solves one particle substep. Elastic rows come before tethers and limits, which must hold. Then ropes are
-/// solved exactly, with what they depend on. Contacts change velocities last, so that nothing pushes a
-/// particle into a body afterwards.
+/// Solves one particle substep. Soft rows come before yarns, and these before tethers and limits, which must
+/// hold. Then ropes are solved exactly, with what they depend on. Contacts change velocities last, so that
+/// nothing pushes a particle into a body afterwards.
 void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep, bool first_of_step) {
   world::begin_particle_substep(w, h);
   world::accelerate_particles(w, end_time, h, first_of_substep);
@@ -59,6 +59,7 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::share_passing_masses(w, h, first_of_step);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
+  world::solve_yarns(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   world::give_back_passing_masses(w);

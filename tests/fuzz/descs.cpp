@@ -197,13 +197,15 @@ ClothDesc make_cloth(Random& random, DVec3 place, const Meshes& meshes, Taste ta
   cloth.thickness = random.real(0.002, 0.03);
   cloth.stretch_stiffness = random.chance(0.2) ? kRigid : scaled(random, 3e3);
   cloth.shear_stiffness = random.chance(0.1) ? kRigid : scaled(random, 1e3);
-  cloth.bend = random.pick<ClothDesc::Bend>({ClothDesc::Bend::kAngle, ClothDesc::Bend::kSpring,
-                                             ClothDesc::Bend::kNone, ClothDesc::Bend::kIsometric});
+  cloth.bend =
+      random.pick<ClothDesc::Bend>({ClothDesc::Bend::kAngle, ClothDesc::Bend::kSpring, ClothDesc::Bend::kNone,
+                                    ClothDesc::Bend::kIsometric, ClothDesc::Bend::kYarn});
   cloth.bend_stiffness = scaled(random, 1e-4);
   if (random.chance(0.5)) cloth.damping = random.real(0, 2);
   if (random.chance(0.3)) cloth.bend_damping = random.real(0, 0.1);
   if (random.chance(0.1)) cloth.yield_angle = random.real(0.2, 1);
-  if (cloth.bend != ClothDesc::Bend::kAngle) cloth.yield_angle = kRigid;
+  if (cloth.bend != ClothDesc::Bend::kAngle && cloth.bend != ClothDesc::Bend::kYarn)
+    cloth.yield_angle = kRigid;
   if (random.chance(0.3)) cloth.extension_max = random.real(0.02, 0.3);
   cloth.tethers = random.chance(0.2);
   const bool may_tear = cloth.bend != ClothDesc::Bend::kSpring && !*cloth.tethers;

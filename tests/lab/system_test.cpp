@@ -175,7 +175,7 @@ TEST_SUITE("lab/system") {
   TEST_CASE("without friction and air a falling, folding cloth keeps its energy") {
     WorldDesc desc;
     desc.wind.air_density = Real(0);
-    for (const auto bend : {ClothDesc::Bend::kAngle, ClothDesc::Bend::kIsometric}) {
+    for (const auto bend : {ClothDesc::Bend::kAngle, ClothDesc::Bend::kIsometric, ClothDesc::Bend::kYarn}) {
       World world = make_world(desc);
       ClothDesc cloth = make_cloth();
       cloth.bend = bend;

@@ -80,8 +80,10 @@ Net hinge(double angle, Real stiffness) {
 
 void solve(Net& net) {
   IsometricBendBlocks blocks;
+  TakenRows taken = {std::vector<std::uint8_t>(static_cast<std::size_t>(net.springs.count()), 0),
+                     std::vector<std::uint8_t>(static_cast<std::size_t>(net.bends.count()), 0)};
   build_isometric_bend_blocks(owner_of_all(net.particles, net.springs, net.bends), net.bends, net.springs,
-                              blocks);
+                              taken, blocks);
   prepare_isometric_bends(blocks, kSubstep);
   for (const IsometricBendPass& pass : blocks.passes)
     solve_isometric_bends(blocks, pass, {pass.first, pass.end}, net.particles);
@@ -191,8 +193,9 @@ TEST_SUITE("solver/isometric_bending") {
     const Net net = random_net(400, 777);
     const auto objects = owner_of_all(net.particles, net.springs, net.bends);
     IsometricBendBlocks isometric_bends;
-    const std::vector<std::uint8_t> taken =
-        build_isometric_bend_blocks(objects, net.bends, net.springs, isometric_bends);
+    TakenRows taken = {std::vector<std::uint8_t>(static_cast<std::size_t>(net.springs.count()), 0),
+                       std::vector<std::uint8_t>(static_cast<std::size_t>(net.bends.count()), 0)};
+    build_isometric_bend_blocks(objects, net.bends, net.springs, taken, isometric_bends);
     CHECK(count_rows_apart(isometric_bends, 400) == 777);
     int springs = 0;
     for (const IsometricBendPass& pass : isometric_bends.passes) {
@@ -200,14 +203,14 @@ TEST_SUITE("solver/isometric_bending") {
       springs += count * ((pass.edge != kNoSpring ? 1 : 0) + (pass.wings != kNoSpring ? 1 : 0));
     }
     int rows = 0;
-    for (std::size_t row = 0; row < taken.size(); ++row) {
-      rows += taken[row];
-      if (net.springs.kind[row] == SpringClass::kLimit) CHECK(taken[row] == 0);
+    for (std::size_t row = 0; row < taken.springs.size(); ++row) {
+      rows += taken.springs[row];
+      if (net.springs.kind[row] == SpringClass::kLimit) CHECK(taken.springs[row] == 0);
     }
     CHECK(springs == rows);
     CHECK(springs > 600);
     SpringBlocks others;
-    build_spring_blocks(objects, net.springs, net.particles, taken, others);
+    build_spring_blocks(objects, net.springs, net.particles, taken.springs, others);
     for (const SpringPass& pass : others.passes)
       rows += kLanes * (pass.end - pass.first - 1) + pass.last_count;
     CHECK(rows == net.springs.count());

@@ -16,7 +16,7 @@ using namespace test;
 namespace {
 
 constexpr std::array kBends = {ClothDesc::Bend::kAngle, ClothDesc::Bend::kSpring, ClothDesc::Bend::kIsometric,
-                               ClothDesc::Bend::kNone};
+                               ClothDesc::Bend::kNone, ClothDesc::Bend::kYarn};
 
 ClothDesc cloth_at(DVec3 corner, int side, ClothDesc::Bend bend) {
   ClothDesc cloth;

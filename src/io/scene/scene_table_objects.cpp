@@ -274,9 +274,10 @@ std::vector<Field> cloth_form_rows() {
                                              "Of each bend row, in units of `bend_stiffness`."),
       field<kDesc, &ClothDesc::yield_angle>("yield_angle", "rad", kPositiveOrRigid,
                                             "What an edge is bent beyond this it keeps, as a fold."),
-      field<kDesc, &ClothDesc::bend>(
-          "bend", "", kAny,
-          "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
+      field<kDesc, &ClothDesc::bend>("bend", "", kAny,
+                                     "By the curvature along rows and columns of a grid [N m] (a mesh: by "
+                                     "angle), by the angle or the curvature at "
+                                     "each edge [N m], by springs to the second neighbor [N/m], or not."),
       field<kDesc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
                                               "Largest relative extension of a stretch spring."),
       field<kDesc, &ClothDesc::strength>("strength", "N/m", kPositive,
@@ -717,7 +718,8 @@ std::span<const EnumName> names_of<ClothDesc::Bend>() {
   static constexpr EnumName kNames[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
                                         {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
                                         {"none", static_cast<int>(ClothDesc::Bend::kNone)},
-                                        {"isometric", static_cast<int>(ClothDesc::Bend::kIsometric)}};
+                                        {"isometric", static_cast<int>(ClothDesc::Bend::kIsometric)},
+                                        {"yarn", static_cast<int>(ClothDesc::Bend::kYarn)}};
   return kNames;
 }
 

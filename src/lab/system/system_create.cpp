@@ -161,7 +161,7 @@ void System::add_bends(const state::Tables& tables, const state::Deformable& obj
     const state::Bends::Stencil& s = tables.bends.stencil[i];
     const std::array<std::uint32_t, 4> at = {s.edge_a - first, s.edge_b - first, s.wing_a - first,
                                              s.wing_b - first};
-    const double stiffness = number(tables.bends.stiffness[i]);
+    const double stiffness = number(state::stiffness_beside_clamp(tables.bends, i, tables.particles));
     const double damping = number(tables.bends.damping[i]);
     if (tables.bends.is_isometric(i)) {
       curvatures_.push_back({at, stiffness, damping, tables.bends.weights_of(i)});

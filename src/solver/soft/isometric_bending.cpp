@@ -114,19 +114,19 @@ Real resistance(const state::Bends& bends, std::uint32_t row) {
 /// Isometric bends with their springs, in the order of the table.
 std::vector<IsometricBend> list_isometric_bends(std::span<const state::Deformable> objects,
                                                 const state::Bends& bends, const state::Springs& springs,
-                                                std::vector<std::uint8_t>& taken,
-                                                IsometricBendBlocks& isometric_bends) {
+                                                TakenRows& taken, IsometricBendBlocks& isometric_bends) {
   const SpringsByEnds by_ends(springs, rows_of(objects, &state::Deformable::springs),
                               rows_of(objects, &state::Deformable::particles));
+  const std::uint32_t first_bend = rows_of(objects, &state::Deformable::bends).first;
   std::vector<IsometricBend> list;
   std::vector<Stencil> stencils;
   for (std::uint32_t object = 0; object < objects.size(); ++object) {
     const state::Rows rows = objects[object].bends;
     for (std::uint32_t row = rows.first; row < rows.end(); ++row) {
-      if (!bends.is_isometric(row)) continue;
+      if (!bends.is_isometric(row) || taken.bends[row - first_bend] != 0) continue;
       const Stencil& s = bends.stencil[row];
-      const auto edge = by_ends.take(s.edge_a, s.edge_b, taken);
-      const auto wings = by_ends.take(s.wing_a, s.wing_b, taken);
+      const auto edge = by_ends.take(s.edge_a, s.edge_b, taken.springs);
+      const auto wings = by_ends.take(s.wing_a, s.wing_b, taken.springs);
       list.push_back({.bend = row,
                       .object = object,
                       .edge = load_spring(edge, springs, isometric_bends),
@@ -167,14 +167,14 @@ void sort_isometric_bends(const state::Bends& bends, std::size_t materials,
 
 }  // namespace
 
-std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Deformable> objects,
-                                                      const state::Bends& bends,
-                                                      const state::Springs& springs,
-                                                      IsometricBendBlocks& isometric_bends) {
+void build_isometric_bend_blocks(std::span<const state::Deformable> objects, const state::Bends& bends,
+                                 const state::Springs& springs, TakenRows& taken,
+                                 IsometricBendBlocks& isometric_bends) {
+  HOOKE_ASSERT(taken.springs.size() == rows_of(objects, &state::Deformable::springs).count);
+  HOOKE_ASSERT(taken.bends.size() == rows_of(objects, &state::Deformable::bends).count);
   isometric_bends = {};
   isometric_bends.first_particle = rows_of(objects, &state::Deformable::particles).first;
   isometric_bends.materials.push_back({});  // kNoSpring
-  std::vector<std::uint8_t> taken(rows_of(objects, &state::Deformable::springs).count, 0);
   std::vector<IsometricBend> list = list_isometric_bends(objects, bends, springs, taken, isometric_bends);
   sort_isometric_bends(bends, isometric_bends.materials.size(), list);
 
@@ -200,7 +200,6 @@ std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Def
     pass.end = static_cast<int>(isometric_bends.blocks.size());
     isometric_bends.passes.push_back(pass);
   }
-  return taken;
 }
 
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {

@@ -2,6 +2,7 @@
 
 #include "parallel/range.h"
 #include "solver/soft/spring_blocks.h"
+#include "solver/soft/yarns.h"
 #include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
@@ -62,12 +63,11 @@ struct IsometricBendBlocks {
 };
 
 /// Makes elements of the isometric bends of these objects and of the springs that lie along their edges or
-/// between their wings. Returns, by row of the objects' springs from their first one on, whether the spring
-/// is in an element.
-std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Deformable> objects,
-                                                      const state::Bends& bends,
-                                                      const state::Springs& springs,
-                                                      IsometricBendBlocks& isometric_bends);
+/// between their wings. It leaves out bends and springs that `taken` marks, and marks the springs that it
+/// takes.
+void build_isometric_bend_blocks(std::span<const state::Deformable> objects, const state::Bends& bends,
+                                 const state::Springs& springs, TakenRows& taken,
+                                 IsometricBendBlocks& isometric_bends);
 
 /// Sets the coefficients of every row for a substep of `h` [s].
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h);

@@ -19,6 +19,7 @@ bool has_soft_rows(const Deformable& object) {
 void place(std::span<const Deformable> objects, std::uint32_t first_object, SoftGroup& group) {
   const Deformable& first = objects[first_object];
   group.first_object = first_object;
+  group.yarns.first_particle = first.particles.first;
   group.springs.first_particle = first.particles.first;
   group.bends.first_particle = first.particles.first;
   group.bends.first_row = first.bends.first;
@@ -130,9 +131,11 @@ class Refresh {
     SoftGroup& group = out_.groups.emplace_back();
     for (const Deformable& object : objects) group.revisions.push_back(object.revision);
     group.size = size_between(first_, end_);
-    const std::vector<std::uint8_t> taken =
-        build_isometric_bend_blocks(objects, tables_.bends, tables_.springs, group.isometric_bends);
-    build_spring_blocks(objects, tables_.springs, tables_.particles, taken, group.springs);
+    TakenRows taken = {.springs = std::vector<std::uint8_t>(rows_of(objects, &Deformable::springs).count, 0),
+                       .bends = std::vector<std::uint8_t>(rows_of(objects, &Deformable::bends).count, 0)};
+    build_yarns(objects, tables_.springs, tables_.bends, tables_.particles, taken, group.yarns);
+    build_isometric_bend_blocks(objects, tables_.bends, tables_.springs, taken, group.isometric_bends);
+    build_spring_blocks(objects, tables_.springs, tables_.particles, taken.springs, group.springs);
     build_bend_blocks(objects, tables_.bends, group.bends);
     build_tetrahedra(objects, tables_.tetrahedra, tables_.particles, group.tetrahedra);
     find_yields(objects, group.bends, group.tetrahedra, group.yields);
@@ -208,6 +211,7 @@ bool separate_stiff_solids(const state::Tables& tables, int workers, SoftGroups&
 }
 
 void prepare_soft_group(SoftGroup& group, Real h) {
+  prepare_yarns(group.yarns, h);
   prepare_springs(group.springs.materials, h);
   prepare_isometric_bends(group.isometric_bends, h);
   prepare_bends(group.bends, h);

@@ -5,6 +5,7 @@
 #include "solver/soft/isometric_bending.h"
 #include "solver/soft/plastic_flow.h"
 #include "solver/soft/spring_blocks.h"
+#include "solver/soft/yarns.h"
 #include "solver/solid/tetrahedron_blocks.h"
 #include "state/tables.h"
 
@@ -31,6 +32,7 @@ struct SoftGroup {
   std::vector<std::uint64_t> revisions;  ///< state::Deformable::revision of each object.
   std::uint32_t first_object = 0;        ///< Row of the first object.
   std::size_t size = 0;                  ///< Number of particles and rows.
+  Yarns yarns;
   SpringBlocks springs;
   BendBlocks bends;
   IsometricBendBlocks isometric_bends;

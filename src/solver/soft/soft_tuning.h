@@ -51,6 +51,24 @@ inline constexpr double kMostDragOfPoints = 1e4;
 /// Chosen by hand; no measurement of the value is recorded.
 inline constexpr double kFrictionError = 0.1;
 
+/// Least compliance of a link of a yarn in a substep, over the inverse masses of its nodes [ratio]. Zero: a
+/// rigid yarn between two pins has one link more than it has coordinates along it. Larger: rigid yarns give
+/// way to what is heavier than a node by its inverse. Smaller: rigid yarns that contacts push tremble.
+inline constexpr Real kLeastYarnSoftness = Real(1e-4);
+
+/// Solutions of a yarn in a substep, at most, after the first: links that came out longer than their limit
+/// are held at it in the next. Fewer: what is left over is longer than its limit for that substep.
+inline constexpr int kMostYarnRounds = 4;
+
+/// h^2 T (w_a + w_b) / l of a link of a yarn from which on its tension T acts on where its nodes are about to
+/// be [ratio]. Larger: from 2 on nodes swing across the yarn without bound. Smaller: taut cloth that turns is
+/// braked.
+inline constexpr Real kLeastTautness = Real(0.5);
+
+/// Length by which a link ends too long since it turns in a substep, over its length, above which its yarn is
+/// solved again [ratio].
+inline constexpr Real kYarnLengthTolerance = Real(0.002);
+
 // How far solids flow.
 
 /// det F_e below which nothing flows [ratio]: inside out, or pressed to a hundredth. Chosen by hand; no

@@ -26,18 +26,6 @@ struct Place {
   }
 };
 
-SpringMaterial material_of(const state::Springs& springs, std::size_t row) {
-  const SpringClass kind = springs.kind[row];
-  return {.stiffness = springs.stiffness[row],
-          .damping = springs.damping[row],
-          .damped_mass = springs.damped_mass[row],
-          .one_sided = kind == SpringClass::kTether || kind == SpringClass::kLimit,
-          .anchored = kind == SpringClass::kTether,
-          .form = springs.form[row],
-          .bias = Real(0),
-          .gamma = Real(0)};
-}
-
 /// What the blocks are made of.
 struct Source {
   const state::Springs& springs;
@@ -86,9 +74,21 @@ void fill_lanes(SpringBlock& block, int count) {
 
 }  // namespace
 
+SpringMaterial material_of_spring(const state::Springs& springs, std::size_t row) {
+  const SpringClass kind = springs.kind[row];
+  return {.stiffness = springs.stiffness[row],
+          .damping = springs.damping[row],
+          .damped_mass = springs.damped_mass[row],
+          .one_sided = kind == SpringClass::kTether || kind == SpringClass::kLimit,
+          .anchored = kind == SpringClass::kTether,
+          .form = springs.form[row],
+          .bias = Real(0),
+          .gamma = Real(0)};
+}
+
 std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
                                    std::vector<SpringMaterial>& materials) {
-  const SpringMaterial material = material_of(springs, row);
+  const SpringMaterial material = material_of_spring(springs, row);
   const auto found = std::find(materials.rbegin(), materials.rend(), material);
   if (found != materials.rend())
     return static_cast<std::uint32_t>(std::distance(found, materials.rend()) - 1);
@@ -146,18 +146,19 @@ Real most_damping(Real mass, Real stiffness, Real h) {
   return std::max(kMostDampingOfMass * mass / h, kMostDampingOfStiffness * h * stiffness);
 }
 
+void prepare_spring(SpringMaterial& material, Real h) {
+  const Real damping = std::min(material.damping, most_damping(material.damped_mass, material.stiffness, h));
+  const Softness soft = softness(material.stiffness, damping, h);
+  material.bias = soft.bias;
+  material.gamma = soft.gamma;
+  const bool rigid = std::isinf(material.stiffness);
+  const Real speed = material.anchored ? kTetherRecoverySpeed : kRigidSpringRecoverySpeed;
+  material.recovery = rigid ? h * speed : SpringMaterial::kWhole;
+  material.recovery_time = rigid ? h : Real(0);
+}
+
 void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
-  for (SpringMaterial& material : materials) {
-    const Real damping =
-        std::min(material.damping, most_damping(material.damped_mass, material.stiffness, h));
-    const Softness soft = softness(material.stiffness, damping, h);
-    material.bias = soft.bias;
-    material.gamma = soft.gamma;
-    const bool rigid = std::isinf(material.stiffness);
-    const Real speed = material.anchored ? kTetherRecoverySpeed : kRigidSpringRecoverySpeed;
-    material.recovery = rigid ? h * speed : SpringMaterial::kWhole;
-    material.recovery_time = rigid ? h : Real(0);
-  }
+  for (SpringMaterial& material : materials) prepare_spring(material, h);
 }
 
 }  // namespace hooke::solver

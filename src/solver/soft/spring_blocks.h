@@ -82,6 +82,9 @@ void build_spring_blocks(std::span<const state::Deformable> objects, const state
                          const state::Particles& particles, std::span<const std::uint8_t> taken,
                          SpringBlocks& blocks);
 
+/// The material of a row, without its coefficients.
+[[nodiscard]] SpringMaterial material_of_spring(const state::Springs& springs, std::size_t row);
+
 /// The material of a row, as its index in the list.
 std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
                                    std::vector<SpringMaterial>& materials);
@@ -91,7 +94,10 @@ std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t ro
 /// without this limit, 5 with ten times as much, none with twice as much.
 [[nodiscard]] Real most_damping(Real mass, Real stiffness, Real h);
 
-/// Sets b and gamma of every material for a substep of `h` [s].
+/// Sets b and gamma of a material for a substep of `h` [s].
+void prepare_spring(SpringMaterial& material, Real h);
+
+/// Sets those of every material.
 void prepare_springs(std::vector<SpringMaterial>& materials, Real h);
 
 }  // namespace hooke::solver

@@ -6,7 +6,7 @@
 #include "solver/rope/rope_rows.h"
 #include "solver/rope/rope_tuning.h"
 #include "solver/rope/rope_twist.h"
-#include "solver/soft/shape_matching.h"
+#include "solver/solid/shape_matching.h"
 #include "state/sleeping_pairs.h"
 #include "world/claim.h"
 #include "world/hook_stages.h"
@@ -216,7 +216,9 @@ double measure_bends(const Tables& t) {
                                     middle_of(t, s.wing_b)};
     if (t.bends.is_isometric(i)) {
       const DVec3 q = elements::curvature(t.bends.weights_of(i), x);
-      energy += elastic(static_cast<double>(t.bends.stiffness[i]), length(q));
+      energy += elastic(
+          static_cast<double>(stiffness_beside_clamp(t.bends, static_cast<std::size_t>(i), t.particles)),
+          length(q));
       continue;
     }
     const auto d = elements::dihedral(x[0], x[1], x[2], x[3]);

@@ -1,4 +1,4 @@
-#include "solver/soft/gas_pressure.h"
+#include "solver/air/gas_pressure.h"
 
 #include "base/assert.h"
 

@@ -1,4 +1,4 @@
-#include "solver/soft/shape_matching.h"
+#include "solver/solid/shape_matching.h"
 
 #include "base/assert.h"
 #include "math/polar.h"
