@@ -122,69 +122,82 @@ SurfaceBox shrink(SurfaceBox box, Real by) {
   return box;
 }
 
-/// Makes the boxes of the triangles of a cell, in its lanes, and of its edges in their groups. Returns that
-/// of the cell.
-SurfaceBox fit_cell(const SurfaceMesh& mesh, std::uint32_t number, SurfaceBoxes& boxes) {
-  const SurfaceCell& cell = mesh.cells[number];
-  const auto at = [&](std::uint32_t vertex) -> const SurfaceBox& {
-    return boxes.by_vertex[vertex - mesh.first_vertex];
-  };
-  SurfaceBox box = SurfaceBox4::none();
-  for (std::uint32_t lane = 0; lane < 4; ++lane) {
-    const std::uint32_t triangle = cell.first_triangle + lane;
-    SurfaceBox one = SurfaceBox4::none();
-    if (triangle < cell.end_triangle) {
-      const auto& [p, q, r] = mesh.triangles[triangle].vertex;
-      one = join(join(at(p), at(q)), at(r));
-      box = lane == 0 ? one : join(box, one);
-    }
-    boxes.triangles[number].set(lane, one);
-  }
-  if (mesh.is_rope()) {
-    box = at(mesh.vertices[cell.first_vertex]);
-    for (std::uint32_t edge = cell.first_edge; edge < cell.end_edge; ++edge)
-      box = join(box, join(at(mesh.edges[edge].vertex[0]), at(mesh.edges[edge].vertex[1])));
-  }
-  const std::uint32_t count = (cell.end_edge - cell.first_edge + 3) / 4 * 4;
-  for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const std::uint32_t edge = cell.first_edge + lane;
-    boxes.edge_groups[cell.first_group + lane / 4].set(
-        lane % 4, edge < cell.end_edge ? boxes.edges[edge] : SurfaceBox4::none());
-  }
-  return box;
-}
+/// Makes the boxes of surfaces out of the cages of their vertices.
+class BoxFitter {
+ public:
+  /// Vertices and faces reach `reach` [m], edges `edge_reach` beyond their cages.
+  BoxFitter(const SurfaceMesh& mesh, Real reach, Real edge_reach, SurfaceBoxes& boxes)
+      : mesh_(mesh), boxes_(boxes), shrinks_by_(reach - edge_reach), reach_(reach) {}
 
-/// Makes the boxes of all features and nodes; `by_vertex` is scratch memory.
-void fit_boxes(const SurfaceContacts& c, const SurfaceMesh& mesh, Real reach, Real edge_reach,
-               SurfaceBoxes& boxes) {
-  boxes.by_vertex.resize(mesh.vertex_count);
-  for (std::uint32_t i = 0; i < mesh.vertex_count; ++i)
-    boxes.by_vertex[i] = box_of_cage(c, mesh.first_vertex + i, reach);
-  const auto at = [&](std::uint32_t vertex) -> const SurfaceBox& {
-    return boxes.by_vertex[vertex - mesh.first_vertex];
-  };
-  boxes.vertices.resize(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) boxes.vertices[i] = at(mesh.vertices[i]);
-  boxes.edges.resize(mesh.edges.size());
-  for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
-    const auto [a, b] = mesh.edges[i].vertex;
-    boxes.edges[i] = shrink(join(at(a), at(b)), reach - edge_reach);
+  void fit(const SurfaceContacts& c) {
+    boxes_.by_vertex.resize(mesh_.vertex_count);
+    for (std::uint32_t i = 0; i < mesh_.vertex_count; ++i)
+      boxes_.by_vertex[i] = box_of_cage(c, mesh_.first_vertex + i, reach_);
+    boxes_.parts.resize(mesh_.parts.size());
+    boxes_.cells.resize(mesh_.cells.size());
+    boxes_.nodes.resize(mesh_.nodes.size());
+    boxes_.children.resize(mesh_.nodes.size());
+    for (std::uint32_t i = 0; i < mesh_.cells.size(); ++i) boxes_.cells[i] = fit_cell(mesh_.cells[i]);
+    for (std::size_t i = mesh_.nodes.size(); i-- > 0;) fit_node(i);
   }
-  boxes.nodes.resize(mesh.nodes.size());
-  boxes.children.resize(mesh.nodes.size());
-  boxes.triangles.resize(mesh.cells.size());
-  boxes.edge_groups.resize(mesh.edge_groups);
-  for (std::size_t i = mesh.nodes.size(); i-- > 0;) {
-    const SurfaceNode& node = mesh.nodes[i];
-    if (node.left == SurfaceNode::kLeaf) {
-      boxes.nodes[i] = fit_cell(mesh, node.right, boxes);
-      continue;
+
+ private:
+  [[nodiscard]] const SurfaceBox& at(std::uint32_t vertex) const {
+    return boxes_.by_vertex[vertex - mesh_.first_vertex];
+  }
+
+  /// Returns the box of the cell, of which that of the whole edges, triangles and vertices is a part.
+  SurfaceBox fit_cell(const SurfaceCell& cell) {
+    const std::uint32_t first =
+        mesh_.is_rope() ? mesh_.vertices[cell.first_vertex] : mesh_.triangles[cell.first_triangle].vertex[0];
+    SurfaceBox all = at(first);
+    for (std::uint32_t i = cell.first_part; i < cell.end_part; ++i)
+      fit_part(mesh_.parts[i], boxes_.parts[i], all);
+    return all;
+  }
+
+  void fit_part(const SurfacePart& part, SurfacePartBoxes& boxes, SurfaceBox& all) const {
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      boxes.vertices.set(lane, lane < part.vertices ? at(part.vertex[lane]) : SurfaceBox4::none());
+      if (lane >= part.edges) {
+        boxes.edges.set(lane, SurfaceBox4::none());
+        continue;
+      }
+      const SurfaceBox edge = join(at(part.edge[0][lane]), at(part.edge[1][lane]));
+      boxes.edges.set(lane, shrink(edge, shrinks_by_));
+      if (mesh_.is_rope()) all = join(all, edge);
     }
-    for (std::size_t lane = 0; lane < 4; ++lane)
-      boxes.children[i].set(lane, boxes.nodes[lane % 2 == 0 ? node.left : node.right]);
-    boxes.nodes[i] = join(boxes.nodes[node.left], boxes.nodes[node.right]);
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+      SurfaceBox triangle = SurfaceBox4::none();
+      if (lane < part.triangles) {
+        triangle =
+            join(join(at(part.triangle[0][lane]), at(part.triangle[1][lane])), at(part.triangle[2][lane]));
+        all = join(all, triangle);
+      }
+      boxes.triangles.set(lane, triangle);
+      boxes.triangles.set(lane + 2, triangle);
+    }
   }
-}
+
+  void fit_node(std::size_t number) {
+    const SurfaceNode& node = mesh_.nodes[number];
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::uint32_t child = node.child[lane];
+      const bool is_cell = (child & SurfaceNode::kCell) != 0;
+      SurfaceBox box = SurfaceBox4::none();
+      if (child != SurfaceNode::kNone)
+        box = is_cell ? boxes_.cells[child & ~SurfaceNode::kCell] : boxes_.nodes[child];
+      boxes_.children[number].set(lane, box);
+      if (child != SurfaceNode::kNone)
+        boxes_.nodes[number] = lane == 0 ? box : join(boxes_.nodes[number], box);
+    }
+  }
+
+  const SurfaceMesh& mesh_;
+  SurfaceBoxes& boxes_;
+  Real shrinks_by_;
+  Real reach_;
+};
 
 /// Makes rows and pairs of what was found.
 class RowMaker {
@@ -268,8 +281,8 @@ class RowMaker {
     auto& blocks = found.is_edges ? group_.edge_pairs : group_.face_pairs;
     if (blocks.empty() || blocks.back().count == kLanes) blocks.emplace_back();
     SurfacePairBlock& block = blocks.back();
-    // Lanes that are not used yet repeat the pair, so that they can be measured.
-    for (int lane = block.count; lane < kLanes; ++lane) {
+    // Lanes that are not used yet repeat the first pair, so that they can be measured.
+    for (int lane = block.count; lane < (block.count == 0 ? kLanes : block.count + 1); ++lane) {
       for (std::size_t k = 0; k < 4; ++k) block.record[k][lane] = 4 * found.vertex[k];
       block.normal[0][lane] = found.normal.x;
       block.normal[1][lane] = found.normal.y;
@@ -441,7 +454,7 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
     const Real reach = (Real(1) + kSurfaceMargin) * radius + Real(2) * group.reserve;
     const Real edge_reach =
         group.any_rope ? reach : (kEdgeShare + kEdgeMargin) * radius + Real(2) * group.reserve;
-    fit_boxes(contacts, contacts.surfaces.meshes[mesh], reach, edge_reach, contacts.boxes[mesh]);
+    BoxFitter(contacts.surfaces.meshes[mesh], reach, edge_reach, contacts.boxes[mesh]).fit(contacts);
   });
   if (group.found.size() < group.pairs.size()) group.found.resize(group.pairs.size());
   RowMaker maker(tables, contacts, group);
@@ -457,7 +470,6 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
                            .number_b = b,
                            .position = contacts.position.data(),
                            .cage = contacts.cage.data(),
-                           .joined = contacts.surfaces.joined.data(),
                            .face_near = (Real(1) + kSurfaceMargin) * distance,
                            .edge_near = maker.edge_near(a, b),
                            .reserve = group.reserve},

@@ -144,10 +144,10 @@ void make_groups(SurfaceContacts& contacts) {
   for (const auto& [a, b] : contacts.next_pairs) sets.merge(a, b);
   std::size_t count = 0;
   auto& group_of = contacts.order;  // The group of each mesh, by the root of its set.
-  group_of.assign(mesh_count, SurfaceNode::kLeaf);
+  group_of.assign(mesh_count, SurfaceNode::kNone);
   for (const auto& [a, b] : contacts.next_pairs) {
     std::uint32_t& number = group_of[sets.root(a)];
-    if (number == SurfaceNode::kLeaf) {
+    if (number == SurfaceNode::kNone) {
       number = static_cast<std::uint32_t>(count++);
       if (contacts.next_groups.size() < count) contacts.next_groups.emplace_back();
       SurfaceGroup& group = contacts.next_groups[number];
@@ -160,7 +160,7 @@ void make_groups(SurfaceContacts& contacts) {
   }
   for (std::uint32_t i = 0; i < mesh_count; ++i) {
     const std::uint32_t number = group_of[sets.root(i)];
-    if (number != SurfaceNode::kLeaf) contacts.next_groups[number].meshes.push_back(i);
+    if (number != SurfaceNode::kNone) contacts.next_groups[number].meshes.push_back(i);
   }
   for (std::size_t i = 0; i < count; ++i) {
     SurfaceGroup& group = contacts.next_groups[i];

@@ -15,52 +15,13 @@
 // After Highway, which includes this file anew for each instruction set; numbers before what uses them.
 // clang-format off
 #include "solver/simd/vectors.h"
+#include "solver/surface/surface_box_vectors.h"
 #include "solver/surface/surface_lanes.h"
 #include "solver/surface/surface_row_lanes.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
-
-#if HWY_TARGET != HWY_SCALAR
-template <>
-struct BoxTests<Wide> {
-  using Four = hn::Vec<Line>;
-
-  static HWY_INLINE bool overlap(const SurfaceBox& a, const SurfaceBox& b) {
-    const Line tag;
-    const Four below = hn::Add(hn::Load(tag, a.lower.data()), hn::Load(tag, b.negated_upper.data()));
-    const Four above = hn::Add(hn::Load(tag, b.lower.data()), hn::Load(tag, a.negated_upper.data()));
-    return hn::AllTrue(tag, hn::Le(hn::Max(below, above), hn::Zero(tag)));
-  }
-  static HWY_INLINE unsigned bits_of(Four excess) {
-    const Line tag;
-    std::uint8_t bits[8];
-    hn::StoreMaskBits(tag, hn::Le(excess, hn::Zero(tag)), bits);
-    return bits[0] & 15U;
-  }
-  static HWY_INLINE unsigned overlap_four(const SurfaceBox& a, const SurfaceBox4& b) {
-    const Line tag;
-    const auto excess = [&](std::size_t k) HWY_ATTR {
-      return hn::Max(hn::Add(hn::Set(tag, a.lower[k]), hn::Load(tag, b.negated_upper[k].data())),
-                     hn::Add(hn::Set(tag, a.negated_upper[k]), hn::Load(tag, b.lower[k].data())));
-    };
-    return bits_of(hn::Max(excess(0), hn::Max(excess(1), excess(2))));
-  }
-  static HWY_INLINE unsigned overlap_children(const SurfaceBox4& a, const SurfaceBox4& b) {
-    const Line tag;
-    const auto doubled = [&](const std::array<float, 4>& lanes) HWY_ATTR {
-      const Four v = hn::Load(tag, lanes.data());
-      return hn::InterleaveLower(tag, v, v);
-    };
-    const auto excess = [&](std::size_t k) HWY_ATTR {
-      return hn::Max(hn::Add(doubled(a.lower[k]), hn::Load(tag, b.negated_upper[k].data())),
-                     hn::Add(doubled(a.negated_upper[k]), hn::Load(tag, b.lower[k].data())));
-    };
-    return bits_of(hn::Max(excess(0), hn::Max(excess(1), excess(2))));
-  }
-};
-#endif
 
 void search_surfaces_here(const SurfaceSearch& search, std::vector<SurfaceFound>& found) {
 #if HWY_TARGET == HWY_SCALAR

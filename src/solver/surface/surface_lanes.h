@@ -9,11 +9,12 @@
 #endif
 
 #include "solver/simd/numbers.h"
+#include "solver/surface/surface_box_lanes.h"
 #include "solver/surface/surface_kernels.h"
 #include "solver/surface/surface_tuning.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cstdint>
 #include <hwy/highway.h>
 #include <utility>
@@ -21,43 +22,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
-
-/// How boxes are compared: one with one, one with four, and two with two, each of which gives four bits.
-template <class Number>
-struct BoxTests {
-  static HWY_INLINE bool overlap(const SurfaceBox& a, const SurfaceBox& b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!(a.lower[k] + b.negated_upper[k] <= Real(0)) || !(b.lower[k] + a.negated_upper[k] <= Real(0)))
-        return false;
-    }
-    return true;
-  }
-  static HWY_INLINE unsigned overlap_four(const SurfaceBox& a, const SurfaceBox4& b) {
-    unsigned bits = 0;
-    for (unsigned lane = 0; lane < 4; ++lane) {
-      bool all = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        all = all && a.lower[k] + b.negated_upper[k][lane] <= Real(0) &&
-              b.lower[k][lane] + a.negated_upper[k] <= Real(0);
-      }
-      bits |= all ? 1U << lane : 0U;
-    }
-    return bits;
-  }
-  /// Bit 2 i + j tells whether child i of a overlaps child j of b.
-  static HWY_INLINE unsigned overlap_children(const SurfaceBox4& a, const SurfaceBox4& b) {
-    unsigned bits = 0;
-    for (unsigned lane = 0; lane < 4; ++lane) {
-      bool all = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        all = all && a.lower[k][lane / 2] + b.negated_upper[k][lane] <= Real(0) &&
-              b.lower[k][lane] + a.negated_upper[k][lane / 2] <= Real(0);
-      }
-      bits |= all ? 1U << lane : 0U;
-    }
-    return bits;
-  }
-};
 
 /// `yes` where none of the three is negative, else `no`.
 template <class Number>
@@ -188,7 +152,6 @@ class SurfaceSearcher {
       : s_(search), found_(found), is_self_(search.mesh_a == search.mesh_b) {}
 
   HWY_INLINE void run() {
-    if (!Tests::overlap(s_.boxes_a->nodes[0], s_.boxes_b->nodes[0])) return;
     push(0, 0);
     while (depth_ > 0) {
       const auto [a, b] = stack_[--depth_];
@@ -201,103 +164,36 @@ class SurfaceSearcher {
   using Tests = BoxTests<Number>;
 
   static constexpr int kDeepest = 256;
-  static constexpr std::uint32_t kRoom = 512;       // Candidates in a batch.
   static constexpr std::uint32_t kMostOfPair = 64;  // Candidates that one pair of cells can have.
-
-  struct Batch {
-    alignas(64) std::uint32_t record[4][kRoom + kLanes];
-    std::uint32_t feature[2][kRoom];
-    std::uint8_t turned[kRoom];  // The first feature is of the second surface.
-    std::uint32_t count = 0;
-  };
+  static constexpr std::uint32_t kCell = SurfaceNode::kCell;
 
   HWY_INLINE void push(std::uint32_t a, std::uint32_t b) { stack_[depth_++] = {a, b}; }
 
-  /// The bits of lanes that hold one of `count` features. A box without bounds, of a point that flies off,
-  /// overlaps empty lanes, too.
-  static HWY_INLINE unsigned lanes_of(std::uint32_t count) { return count < 4 ? (1U << count) - 1U : 15U; }
-
-  /// Goes on below two nodes that overlap.
+  /// Goes on below two nodes or cells that overlap. What is to come first is pushed last.
   HWY_INLINE void visit(std::uint32_t a, std::uint32_t b) {
-    const SurfaceNode& node_a = s_.mesh_a->nodes[a];
-    const SurfaceNode& node_b = s_.mesh_b->nodes[b];
-    const bool leaf_a = node_a.left == SurfaceNode::kLeaf;
-    const bool leaf_b = node_b.left == SurfaceNode::kLeaf;
-    if (leaf_a && leaf_b) return test_cells(node_a.right, node_b.right);
-    if (leaf_a) {
-      const unsigned bits = Tests::overlap_four(s_.boxes_a->nodes[a], s_.boxes_b->children[b]);
-      if ((bits & 2U) != 0) push(a, node_b.right);
-      if ((bits & 1U) != 0) push(a, node_b.left);
-    } else if (leaf_b) {
-      const unsigned bits = Tests::overlap_four(s_.boxes_b->nodes[b], s_.boxes_a->children[a]);
-      if ((bits & 2U) != 0) push(node_a.right, b);
-      if ((bits & 1U) != 0) push(node_a.left, b);
+    if ((a & b & kCell) != 0) return test_cells(a & ~kCell, b & ~kCell);
+    if ((a & kCell) != 0) {
+      const unsigned bits = Tests::overlap_one(s_.boxes_a->cells[a & ~kCell], s_.boxes_b->children[b]);
+      for (unsigned lane = 4; lane-- > 0;) {
+        if ((bits >> lane & 1U) != 0) push(a, s_.mesh_b->nodes[b].child[lane]);
+      }
+    } else if ((b & kCell) != 0) {
+      const unsigned bits = Tests::overlap_one(s_.boxes_b->cells[b & ~kCell], s_.boxes_a->children[a]);
+      for (unsigned lane = 4; lane-- > 0;) {
+        if ((bits >> lane & 1U) != 0) push(s_.mesh_a->nodes[a].child[lane], b);
+      }
     } else {
-      push_children(node_a, node_b, Tests::overlap_children(s_.boxes_a->children[a], s_.boxes_b->children[b]),
-                    is_self_ && a == b);
+      unsigned bits = Tests::overlap_children(s_.boxes_a->children[a], s_.boxes_b->children[b]);
+      if (is_self_ && a == b) bits &= ChildPair::in_one_node();
+      push_children(s_.mesh_a->nodes[a], s_.mesh_b->nodes[b], bits);
     }
   }
 
-  /// Of a node with itself, the right child with the left one is the left with the right.
-  HWY_INLINE void push_children(const SurfaceNode& a, const SurfaceNode& b, unsigned bits, bool same) {
-    if ((bits & 8U) != 0) push(a.right, b.right);
-    if ((bits & 4U) != 0 && !same) push(a.right, b.left);
-    if ((bits & 2U) != 0) push(a.left, b.right);
-    if ((bits & 1U) != 0) push(a.left, b.left);
-  }
-
-  [[nodiscard]] HWY_INLINE bool are_joined(std::uint32_t a, std::uint32_t b) const {
-    return s_.joined[a] == s_.joined[b];
-  }
-
-  static HWY_INLINE void append(Batch& batch, const std::array<std::uint32_t, 4>& vertex, std::uint32_t first,
-                                std::uint32_t second, bool turned) {
-    const std::uint32_t i = batch.count++;
-    for (std::size_t k = 0; k < 4; ++k) batch.record[k][i] = 4 * vertex[k];
-    batch.feature[0][i] = first;
-    batch.feature[1][i] = second;
-    batch.turned[i] = turned ? 1 : 0;
-  }
-
-  /// A cell of one of the two surfaces.
-  struct Side {
-    const SurfaceMesh& mesh;
-    const SurfaceBoxes& boxes;
-    std::uint32_t cell;
-  };
-
-  /// Tests the vertices of one side with the triangles of the other; `turned` if those are of the first
-  /// surface.
-  HWY_INLINE void test_faces(const Side& points, const Side& faces, bool turned) {
-    const SurfaceCell& a = points.mesh.cells[points.cell];
-    const SurfaceCell& b = faces.mesh.cells[faces.cell];
-    for (std::uint32_t i = a.first_vertex; i < a.end_vertex; ++i) {
-      unsigned bits = Tests::overlap_four(points.boxes.vertices[i], faces.boxes.triangles[faces.cell]) &
-                      lanes_of(b.end_triangle - b.first_triangle);
-      const std::uint32_t v = points.mesh.vertices[i];
-      for (std::uint32_t j = b.first_triangle; bits != 0; ++j, bits >>= 1U) {
-        if ((bits & 1U) == 0) continue;
-        const auto& [p, q, r] = faces.mesh.triangles[j].vertex;
-        if (are_joined(v, p) || are_joined(v, q) || are_joined(v, r)) continue;
-        append(faces_, {v, p, q, r}, i, j, turned);
-      }
-    }
-  }
-
-  HWY_INLINE void test_edges(const SurfaceCell& a, const SurfaceCell& b, bool same) {
-    for (std::uint32_t i = a.first_edge; i < a.end_edge; ++i) {
-      for (std::uint32_t group = 0; 4 * group < b.end_edge - b.first_edge; ++group) {
-        unsigned bits =
-            Tests::overlap_four(s_.boxes_a->edges[i], s_.boxes_b->edge_groups[b.first_group + group]) &
-            lanes_of(b.end_edge - b.first_edge - 4 * group);
-        const auto& [p, q] = s_.mesh_a->edges[i].vertex;
-        for (std::uint32_t j = b.first_edge + 4 * group; bits != 0; ++j, bits >>= 1U) {
-          if ((bits & 1U) == 0 || (same && j <= i)) continue;
-          const auto& [r, t] = s_.mesh_b->edges[j].vertex;
-          if (are_joined(p, r) || are_joined(p, t) || are_joined(q, r) || are_joined(q, t)) continue;
-          append(edges_, {p, q, r, t}, i, j, false);
-        }
-      }
+  HWY_INLINE void push_children(const SurfaceNode& a, const SurfaceNode& b, unsigned bits) {
+    while (bits != 0) {
+      const auto lane = static_cast<unsigned>(std::bit_width(bits)) - 1U;
+      bits ^= 1U << lane;
+      push(a.child[ChildPair::first(lane)], b.child[ChildPair::second(lane)]);
     }
   }
 
@@ -305,12 +201,29 @@ class SurfaceSearcher {
     const SurfaceCell& cell_a = s_.mesh_a->cells[a];
     const SurfaceCell& cell_b = s_.mesh_b->cells[b];
     const bool same = is_self_ && a == b;
-    if (std::max(faces_.count, edges_.count) + kMostOfPair > kRoom) flush();
-    const Side side_a = {*s_.mesh_a, *s_.boxes_a, a};
-    const Side side_b = {*s_.mesh_b, *s_.boxes_b, b};
-    test_faces(side_a, side_b, false);
-    if (!same) test_faces(side_b, side_a, true);
-    test_edges(cell_a, cell_b, same);
+    if (std::max(faces_.count, edges_.count) + kMostOfPair > SurfaceCandidates::kRoom) flush();
+    for (std::uint32_t i = cell_a.first_part; i < cell_a.end_part; ++i) {
+      const std::uint32_t first = same ? i : cell_b.first_part;
+      for (std::uint32_t j = first; j < cell_b.end_part; ++j) {
+        const SurfaceSide side_b = {s_.mesh_b->parts[j], s_.boxes_b->parts[j]};
+        Tests::add_faces({s_.mesh_a->parts[i], s_.boxes_a->parts[i]}, side_b, same && i == j, faces_);
+      }
+      if (cell_b.end_part - cell_b.first_part == 1) {
+        test_edges(i, first, same, kAllPairs);
+        continue;
+      }
+      // Each edge is compared with all of the other cell before the next one is.
+      for (unsigned edge = 0; edge < 4; ++edge) {
+        for (std::uint32_t j = first; j < cell_b.end_part; ++j)
+          test_edges(i, j, same && i == j, 15U << 4U * edge);
+      }
+    }
+  }
+
+  HWY_INLINE void test_edges(std::uint32_t a, std::uint32_t b, bool same, unsigned pairs) {
+    const SurfaceSide side_b = {s_.mesh_b->parts[b], s_.boxes_b->parts[b]};
+    Tests::add_edges({s_.mesh_a->parts[a], s_.boxes_a->parts[a]}, side_b, same ? pairs & kPairsOfOne : pairs,
+                     edges_);
   }
 
   HWY_INLINE void flush() {
@@ -319,7 +232,7 @@ class SurfaceSearcher {
   }
 
   template <int kFirstSide>
-  HWY_INLINE void narrow(Batch& batch, Real near) {
+  HWY_INLINE void narrow(SurfaceCandidates& batch, Real near) {
     // Lanes behind the last candidate repeat it.
     for (std::uint32_t i = batch.count; batch.count > 0 && i % kLanes != 0; ++i) {
       for (std::size_t k = 0; k < 4; ++k) batch.record[k][i] = batch.record[k][batch.count - 1];
@@ -331,7 +244,7 @@ class SurfaceSearcher {
 
   /// `kFirstSide` vertices are the first side of the pair.
   template <int kFirstSide>
-  HWY_INLINE void narrow_lanes(const Batch& batch, std::uint32_t i, Real near) {
+  HWY_INLINE void narrow_lanes(const SurfaceCandidates& batch, std::uint32_t i, Real near) {
     const auto* position = reinterpret_cast<const Real*>(s_.position);
     const auto* cages = reinterpret_cast<const Real*>(s_.cage);
     const Number zero(Real(0));
@@ -372,23 +285,30 @@ class SurfaceSearcher {
     emit<kFirstSide>(batch, i, nearest, gap, flags);
   }
 
+  static HWY_INLINE bool is_turned(const SurfaceCandidates& batch, std::uint32_t i) {
+    return (batch.feature[1][i] & SurfaceCandidates::kTurned) != 0;
+  }
+  static HWY_INLINE std::uint32_t second_of(const SurfaceCandidates& batch, std::uint32_t i) {
+    return batch.feature[1][i] & ~SurfaceCandidates::kTurned;
+  }
+
   /// Whether other features speak for a pair that is only near: where the nearest points are ends of edges,
   /// or an edge or a corner that another triangle owns.
   template <int kFirstSide>
-  HWY_INLINE bool is_left_to_others(const Batch& batch, std::uint32_t i, const Real (&lane)[9][kLanes],
-                                    std::uint32_t j) const {
+  HWY_INLINE bool is_left_to_others(const SurfaceCandidates& batch, std::uint32_t i,
+                                    const Real (&lane)[9][kLanes], std::uint32_t j) const {
     unsigned zeros = 0;
     for (unsigned k = 0; k < 4; ++k) zeros |= lane[5 + k][j] == Real(0) ? 1U << k : 0U;
     if (zeros == 0) return false;
     if constexpr (kFirstSide == 2) return !s_.mesh_a->is_rope() && !s_.mesh_b->is_rope();
-    const SurfaceMesh& mesh = batch.turned[i] != 0 ? *s_.mesh_a : *s_.mesh_b;
-    const SurfaceTriangle& triangle = mesh.triangles[batch.feature[1][i]];
+    const SurfaceMesh& mesh = is_turned(batch, i) ? *s_.mesh_a : *s_.mesh_b;
+    const SurfaceTriangle& triangle = mesh.triangles[second_of(batch, i)];
     for (unsigned k = 0; k < 3; ++k) {
       const unsigned next = (k + 1) % 3;
       if (zeros == 1U << (k + 1)) return (triangle.owns_edge >> next & 1U) == 0;
       if (zeros == (14U & ~(1U << (k + 1)))) {
         if ((triangle.owns_vertex >> k & 1U) == 0) return true;
-        const SurfaceMesh& points = batch.turned[i] != 0 ? *s_.mesh_b : *s_.mesh_a;
+        const SurfaceMesh& points = is_turned(batch, i) ? *s_.mesh_b : *s_.mesh_a;
         return batch.record[0][i] > 4 * triangle.vertex[k] && !points.is_rope();
       }
     }
@@ -396,8 +316,8 @@ class SurfaceSearcher {
   }
 
   template <int kFirstSide>
-  HWY_INLINE void emit(const Batch& batch, std::uint32_t i, const Nearest<Number>& nearest, Number gap,
-                       Number flags) {
+  HWY_INLINE void emit(const SurfaceCandidates& batch, std::uint32_t i, const Nearest<Number>& nearest,
+                       Number gap, Number flags) {
     alignas(64) Real lane[9][kLanes];
     write(flags, lane[0]);
     write(gap, lane[1]);
@@ -420,8 +340,8 @@ class SurfaceSearcher {
       found.gap = lane[1][j];
       found.flags = static_cast<std::uint32_t>(lane[0][j]);
       found.first_feature = batch.feature[0][i + j];
-      found.second_feature = batch.feature[1][i + j];
-      const bool turned = batch.turned[i + j] != 0;
+      found.second_feature = second_of(batch, i + j);
+      const bool turned = is_turned(batch, i + j);
       found.first_mesh = turned ? s_.number_b : s_.number_a;
       found.second_mesh = turned ? s_.number_a : s_.number_b;
       found.is_edges = kFirstSide == 2;
@@ -431,7 +351,7 @@ class SurfaceSearcher {
   const SurfaceSearch& s_;
   std::vector<SurfaceFound>& found_;
   bool is_self_;
-  Batch faces_, edges_;
+  SurfaceCandidates faces_, edges_;
   std::pair<std::uint32_t, std::uint32_t> stack_[kDeepest];  // Pairs of nodes that overlap.
   int depth_ = 0;
 };

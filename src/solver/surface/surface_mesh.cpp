@@ -153,8 +153,6 @@ class MeshBuilder {
         if (triangle != kNone) mesh.triangles.push_back(triangle_at(triangle, mesh.first_vertex));
       }
       rows.end_vertex = size(mesh.vertices);
-      rows.first_group = mesh.edge_groups;
-      mesh.edge_groups += (size(mesh.edges) - rows.first_edge + 3) / 4;
       rows.end_edge = size(mesh.edges);
       rows.end_triangle = size(mesh.triangles);
       mesh.cells.push_back(rows);
@@ -221,6 +219,76 @@ class MeshBuilder {
   std::uint32_t vertex_count_;
 };
 
+/// Puts cells into the order in which the tree is walked, so that those that are looked at one after the
+/// other are near each other in memory.
+void order_cells(SurfaceMesh& mesh) {
+  std::vector<SurfaceCell> ordered;
+  ordered.reserve(mesh.cells.size());
+  std::vector<std::uint32_t> stack = {0};
+  while (!stack.empty()) {
+    SurfaceNode& node = mesh.nodes[stack.back()];
+    stack.pop_back();
+    for (std::uint32_t& child : node.child) {
+      if (child == SurfaceNode::kNone || (child & SurfaceNode::kCell) == 0) continue;
+      ordered.push_back(mesh.cells[child & ~SurfaceNode::kCell]);
+      child = SurfaceNode::kCell | static_cast<std::uint32_t>(ordered.size() - 1);
+    }
+    for (std::size_t lane = 4; lane-- > 0;) {
+      if ((node.child[lane] & SurfaceNode::kCell) == 0) stack.push_back(node.child[lane]);
+    }
+  }
+  mesh.cells = std::move(ordered);
+}
+
+/// Divides cells into parts.
+void make_parts(SurfaceMesh& mesh) {
+  for (SurfaceCell& cell : mesh.cells) {
+    cell.first_part = static_cast<std::uint32_t>(mesh.parts.size());
+    std::uint32_t vertex = cell.first_vertex;
+    std::uint32_t edge = cell.first_edge;
+    std::uint32_t triangle = cell.first_triangle;
+    const auto take = [](std::uint32_t most, std::uint32_t& first, std::uint32_t end) {
+      const std::uint32_t count = std::min(most, end - first);
+      first += count;
+      return static_cast<std::uint8_t>(count);
+    };
+    while (vertex < cell.end_vertex || edge < cell.end_edge || triangle < cell.end_triangle) {
+      SurfacePart part = {.first_vertex = vertex, .first_edge = edge, .first_triangle = triangle};
+      part.vertices = take(4, vertex, cell.end_vertex);
+      part.edges = take(4, edge, cell.end_edge);
+      part.triangles = take(2, triangle, cell.end_triangle);
+      mesh.parts.push_back(part);
+    }
+    cell.end_part = static_cast<std::uint32_t>(mesh.parts.size());
+  }
+}
+
+/// Writes to each part the vertices of its features, and the numbers of those that hooks join. Lanes without
+/// a feature hold some vertex.
+void fill_parts(std::span<const std::uint32_t> joined, SurfaceMesh& mesh) {
+  for (SurfacePart& part : mesh.parts) {
+    part.vertex.fill(mesh.first_vertex);
+    for (auto& ends : part.edge) ends.fill(mesh.first_vertex);
+    for (auto& corners : part.triangle) corners.fill(mesh.first_vertex);
+    for (std::uint32_t i = 0; i < part.vertices; ++i) part.vertex[i] = mesh.vertices[part.first_vertex + i];
+    for (std::uint32_t i = 0; i < part.edges; ++i) {
+      for (std::size_t k = 0; k < 2; ++k) part.edge[k][i] = mesh.edges[part.first_edge + i].vertex[k];
+    }
+    for (std::uint32_t i = 0; i < part.triangles; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        part.triangle[k][i] = part.triangle[k][i + 2] = mesh.triangles[part.first_triangle + i].vertex[k];
+      }
+    }
+    const auto number = [&](std::uint32_t vertex) { return joined[vertex]; };
+    const auto set = [&](const std::array<std::uint32_t, 4>& from, std::array<std::uint32_t, 4>& to) {
+      std::transform(from.begin(), from.end(), to.begin(), number);
+    };
+    set(part.vertex, part.joined_vertex);
+    for (std::size_t k = 0; k < 2; ++k) set(part.edge[k], part.joined_edge[k]);
+    for (std::size_t k = 0; k < 3; ++k) set(part.triangle[k], part.joined_triangle[k]);
+  }
+}
+
 /// Appends the segments of a rope. Each of them speaks for its first point, the last one for both.
 void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfaces) {
   constexpr std::uint32_t kSegmentsOfCell = 4;
@@ -238,7 +306,7 @@ void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfa
     const std::uint32_t vertex = mesh.first_vertex + i;
     const auto first_edge = static_cast<std::uint32_t>(mesh.edges.size());
     if (i == 0 || (joins(i) && first_edge - mesh.cells.back().first_edge == kSegmentsOfCell)) {
-      mesh.cells.push_back({.first_vertex = i, .first_edge = first_edge, .first_group = mesh.edge_groups++});
+      mesh.cells.push_back({.first_vertex = i, .first_edge = first_edge});
       centers.push_back({static_cast<Real>(i), Real(0), Real(0)});
     }
     surfaces.particle.push_back(object.particles.first + i);
@@ -257,6 +325,8 @@ void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfa
   }
   mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
   mesh.nodes = build_surface_tree(centers);
+  order_cells(mesh);
+  make_parts(mesh);
 }
 
 /// Appends the surface of an object; `vertex_of` is scratch memory by particle, full of kNone.
@@ -289,6 +359,8 @@ void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::
   for (std::uint32_t i = mesh.first_vertex; i < mesh.first_vertex + count; ++i)
     rest.push_back((*t.objects[row].surface.rest_points)[surfaces.particle[i] - rows.first]);
   MeshBuilder(triangles, rest).build(mesh);
+  order_cells(mesh);
+  make_parts(mesh);
 }
 
 /// Calls `visit` with the particles by which a place of a hook is joined with others: all of a surface, and
@@ -364,6 +436,7 @@ bool refresh_surfaces(const state::Tables& tables, SurfaceMeshes& surfaces) {
   }
   for (std::uint32_t i = 0; i < surfaces.particle.size(); ++i) vertex_of[surfaces.particle[i]] = i;
   join_hooked(tables, vertex_of, surfaces);
+  for (SurfaceMesh& mesh : surfaces.meshes) fill_parts(surfaces.joined, mesh);
   list_sewn(tables, vertex_of, surfaces);
   return stale;
 }

@@ -17,20 +17,37 @@
 namespace hooke::solver {
 
 /// Up to two triangles that share an edge, with the vertices and edges that they own, or a few segments of a
-/// rope. Each vertex and each edge is owned by one cell. Rows [first, end) of the features of a mesh.
+/// rope. Each vertex and each edge is owned by one cell. Rows [first, end) of the features and parts of a
+/// mesh.
 struct SurfaceCell {
   std::uint32_t first_vertex = 0, end_vertex = 0;
   std::uint32_t first_edge = 0, end_edge = 0;
   std::uint32_t first_triangle = 0, end_triangle = 0;
-  std::uint32_t first_group = 0;  ///< The first of its groups of up to four edges.
+  std::uint32_t first_part = 0, end_part = 0;
 };
 
-/// A node of the tree over cells. Children stand after their parent.
-struct SurfaceNode {
-  static constexpr std::uint32_t kLeaf = 0xFFFFFFFF;
+/// Up to four vertices, four edges and two triangles of a cell, side by side, as kernels compare them with
+/// those of another part. Most cells have one part.
+struct alignas(16) SurfacePart {
+  std::array<std::uint32_t, 4> vertex = {};
+  std::array<std::array<std::uint32_t, 4>, 2> edge = {};  ///< Their ends.
+  std::array<std::array<std::uint32_t, 4>, 3> triangle =
+      {};  ///< Their corners; lanes 2 and 3 repeat 0 and 1.
+  /// SurfaceMeshes::joined of the same vertices.
+  std::array<std::uint32_t, 4> joined_vertex = {};
+  std::array<std::array<std::uint32_t, 4>, 2> joined_edge = {};
+  std::array<std::array<std::uint32_t, 4>, 3> joined_triangle = {};
+  std::uint32_t first_vertex = 0, first_edge = 0, first_triangle = 0;  ///< Rows of the features of the mesh.
+  std::uint8_t vertices = 0, edges = 0, triangles = 0;                 ///< How many it has.
+};
 
-  std::uint32_t left = kLeaf;  ///< Index of the first child; kLeaf for a leaf.
-  std::uint32_t right = 0;     ///< Index of the second child; for a leaf, the cell.
+/// A node of the tree over cells, with up to four children. Children stand after their parent. They are those
+/// of two levels of a binary tree: the left ones of its children are 0 and 2.
+struct SurfaceNode {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  static constexpr std::uint32_t kCell = 0x80000000;  ///< Added to the index of a cell.
+
+  std::array<std::uint32_t, 4> child = {kNone, kNone, kNone, kNone};  ///< Nodes and cells.
 };
 
 /// A triangle with its edges. Flags say which of its parts it speaks for, so that an edge or a corner of
@@ -59,7 +76,7 @@ struct SurfaceMesh {
   std::vector<SurfaceEdge> edges;       ///< In the order of cells.
   std::vector<SurfaceTriangle> triangles;
   std::vector<SurfaceCell> cells;
-  std::uint32_t edge_groups = 0;   ///< Number of groups of edges of all cells.
+  std::vector<SurfacePart> parts;  ///< In the order of cells.
   std::vector<SurfaceNode> nodes;  ///< The first one is the root.
   /// Vertices that share an edge with each vertex: neighbors[neighbor_begin[i] .. neighbor_begin[i + 1]), i
   /// counted from first_vertex.

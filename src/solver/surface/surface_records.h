@@ -41,21 +41,25 @@ struct alignas(4 * sizeof(Real)) SurfaceBox4 {
       negated_upper[k][lane] = box.negated_upper[k];
     }
   }
-  /// A box that overlaps nothing.
+  /// A box that overlaps nothing, not even a box without bounds of a point that flies off.
   static SurfaceBox none() {
-    constexpr Real kFar = std::numeric_limits<Real>::max();
-    return {{kFar, kFar, kFar, Real(0)}, {kFar, kFar, kFar, Real(0)}};
+    constexpr Real kNot = std::numeric_limits<Real>::quiet_NaN();
+    return {{kNot, kNot, kNot, Real(0)}, {kNot, kNot, kNot, Real(0)}};
   }
+};
+
+/// The boxes of the features of a part; lanes 2 and 3 of the triangles repeat 0 and 1.
+struct SurfacePartBoxes {
+  SurfaceBox4 vertices, edges, triangles;
 };
 
 /// The boxes of a surface: its nodes and features with all that their cages let them reach.
 struct SurfaceBoxes {
   std::vector<SurfaceBox> nodes;
-  std::vector<SurfaceBox4> children;  ///< By node: the boxes of its children, left, right, left, right.
-  std::vector<SurfaceBox> vertices, edges;
-  std::vector<SurfaceBox4> edge_groups;  ///< By group of a cell's edges.
-  std::vector<SurfaceBox4> triangles;    ///< By cell.
-  std::vector<SurfaceBox> by_vertex;     ///< Scratch memory: in the order of vertices, not of cells.
+  std::vector<SurfaceBox4> children;  ///< By node.
+  std::vector<SurfaceBox> cells;
+  std::vector<SurfacePartBoxes> parts;
+  std::vector<SurfaceBox> by_vertex;  ///< Scratch memory.
 };
 
 /// A vertex and a triangle, or two edges, that may come near each other.
@@ -85,7 +89,6 @@ struct SurfaceSearch {
   std::uint32_t number_a = 0, number_b = 0;         ///< Numbers of the meshes.
   const state::PositionRecord* position = nullptr;  ///< By vertex.
   const SurfaceCage* cage = nullptr;                ///< By vertex.
-  const std::uint32_t* joined = nullptr;            ///< SurfaceMeshes::joined.
   Real face_near = Real(0);                         ///< Distance at which a vertex and a face are near [m].
   Real edge_near = Real(0);                         ///< The same of two edges [m].
   Real reserve = Real(0);                           ///< Rounding of positions [m].

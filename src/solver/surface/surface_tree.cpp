@@ -31,29 +31,45 @@ std::vector<SurfaceNode> build_surface_tree(std::span<const Vec3> centers) {
   if (centers.empty()) return {};
   std::vector<std::uint32_t> cells(centers.size());
   std::iota(cells.begin(), cells.end(), std::uint32_t{0});
-  // Each task makes one node of the cells [first, end).
-  struct Task {
-    std::uint32_t node, first, end;
+  // Cells [first, end).
+  struct Part {
+    std::uint32_t first, end;
+    [[nodiscard]] std::uint32_t count() const { return end - first; }
   };
-  std::vector<SurfaceNode> nodes(1);
-  std::vector<Task> tasks = {{0, 0, static_cast<std::uint32_t>(cells.size())}};
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Task task = tasks[i];
-    if (task.end - task.first == 1) {
-      nodes[task.node].right = cells[task.first];
-      continue;
-    }
-    const auto set = std::span(cells).subspan(task.first, task.end - task.first);
+  const auto split = [&](Part part) {
+    const auto set = std::span(cells).subspan(part.first, part.count());
     const int axis = longest_axis(centers, set);
     std::sort(set.begin(), set.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(coordinate(centers[a], axis), a) < std::pair(coordinate(centers[b], axis), b);
     });
-    const auto left = static_cast<std::uint32_t>(nodes.size());
-    nodes[task.node] = {left, left + 1};
-    nodes.resize(nodes.size() + 2);
-    const std::uint32_t middle = task.first + (task.end - task.first + 1) / 2;
-    tasks.push_back({left, task.first, middle});
-    tasks.push_back({left + 1, middle, task.end});
+    const std::uint32_t middle = part.first + (part.count() + 1) / 2;
+    return std::pair(Part{part.first, middle}, Part{middle, part.end});
+  };
+  std::vector<SurfaceNode> nodes(1);
+  std::vector<Part> parts = {{0, static_cast<std::uint32_t>(cells.size())}};  // By node.
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto add_child = [&](std::size_t lane, Part part) {
+      if (part.count() == 1) {
+        nodes[i].child[lane] = SurfaceNode::kCell | cells[part.first];
+        return;
+      }
+      nodes[i].child[lane] = static_cast<std::uint32_t>(nodes.size());
+      nodes.emplace_back();
+      parts.push_back(part);
+    };
+    const auto add_half = [&](std::size_t lane, Part part) {
+      if (part.count() == 1) return add_child(lane, part);
+      const auto [first, second] = split(part);
+      add_child(lane, first);
+      add_child(lane + 1, second);
+    };
+    if (parts[i].count() == 1) {
+      add_child(0, parts[i]);
+      continue;
+    }
+    const auto [left, right] = split(parts[i]);
+    add_half(0, left);
+    add_half(2, right);
   }
   return nodes;
 }

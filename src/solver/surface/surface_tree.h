@@ -7,8 +7,8 @@
 
 namespace hooke::solver {
 
-/// Makes a binary tree over cells whose centers at rest are given: each set of cells is split in the middle
-/// along the longest side of the box around their centers.
+/// Makes a tree over cells whose centers at rest are given: each set of cells is split in the middle along
+/// the longest side of the box around their centers, and both halves again, which makes a node of four.
 [[nodiscard]] std::vector<SurfaceNode> build_surface_tree(std::span<const Vec3> centers);
 
 }  // namespace hooke::solver
