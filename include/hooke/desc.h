@@ -459,8 +459,7 @@ struct ClothDesc {
   /// its triangles times `stretch_stiffness`, as a mean at a point, exceeds this: the point splits, across
   /// the direction of the largest strain. Beside a crack 60 % of it are enough, so that tears run. At most 8
   /// points a step split; Events::tears says which. A closed cloth with gas bursts: the gas is gone at once.
-  /// It needs a finite `stretch_stiffness`, and allows neither tethers, which would hold what should tear,
-  /// nor Bend::kSpring.
+  /// Tethers across a crack go. It needs a finite `stretch_stiffness`.
   std::optional<Real> strength = {};
   /// The strain that it can take, positive, in place of `strength`, or besides; the smaller one counts.
   std::optional<Real> tear_strain = {};

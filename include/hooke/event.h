@@ -68,6 +68,7 @@ struct ClothTearEvent {
   DVec3 place = {};         ///< Where both were [m].
   Real strain = Real(0);    ///< Largest strain there.
   double time = 0;          ///< Time of the world at the end of the step [s].
+  bool burst = false;       ///< The cloth was closed, and lost its gas by this tear.
 };
 
 /// All events of one step. Lists of bodies are in the order of the bodies' creation, and the same for any
@@ -86,7 +87,7 @@ struct Events {
   std::vector<BreakEvent> breaks;  ///< Hooks that broke, in order of time, then of the hooks' creation.
   /// Segments of ropes that broke, in order of time, then of the ropes' creation, then along the rope.
   std::vector<RopeBreakEvent> rope_breaks;
-  std::vector<ClothTearEvent> tears;  ///< Points of cloths that split, in order of cloths' creation.
+  std::vector<ClothTearEvent> tears;        ///< Points of cloths that split, in order of cloths' creation.
 };
 
 }  // namespace hooke

@@ -2,6 +2,7 @@
 
 #include "hooke/bsp.h"
 #include "hooke/clock.h"
+#include "hooke/cut.h"
 #include "hooke/desc.h"
 #include "hooke/event.h"
 #include "hooke/fracture.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/cut.h"
 #include "hooke/desc.h"
 #include "hooke/event.h"
 #include "hooke/id.h"
@@ -427,9 +428,12 @@ class World {
   /// Torque along each segment of a rope [N m], with the sign of its twist. It is the mean over the last
   /// step.
   [[nodiscard]] std::vector<Real> torques(RopeId id) const;
-  /// For each point that a cloth got by tearing, in the order of its index, the point that it split from.
-  /// They follow the points that the cloth was made with, which keep their indices.
+  ///@{
+  /// For each point that an object got by tearing or cutting, in the order of its index, the point that it
+  /// split from. They follow the points that the object was made with, which keep their indices.
   [[nodiscard]] std::vector<std::uint32_t> splits(ClothId id) const;
+  [[nodiscard]] std::vector<std::uint32_t> splits(SolidId id) const;
+  ///@}
   /// Lists the triangles of a cloth, as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
   /// Pressure of the gas in a closed cloth above that of the air around it [Pa]; 0 for a cloth without.
@@ -537,6 +541,13 @@ class World {
   Result<void> pin(PointRef point, const MotionDesc& motion = {});
   /// Lets a point go; nothing happens to one that is not pinned.
   Result<void> unpin(PointRef point);
+  /// Cuts ropes, cloths and solids with a blade that sweeps a surface, now. Ropes lose the segments that it
+  /// crosses. Triangles of a cloth and tetrahedra of a solid part at their common edge or face if the way
+  /// from the middle of the one to that of the other crosses the surface: a crack follows the blade to within
+  /// an element. Points at it become several, with shares of the mass at one place and with one velocity, so
+  /// that mass and momentum stay; springs along it are shared out, and what leads across it goes. Errors:
+  /// ends of the edge beyond limits::kPlace, an id that is stale.
+  Result<CutResult> cut(const CutDesc& desc);
 
   // Sleepers wake where these calls, or objects that come and go, change what acts on them. A force law does
   // not see those that sleep (BodyDesc::can_sleep), and its changes with time do not wake them.

@@ -1,24 +1,23 @@
 #include "build/cloth_tears.h"
 
 #include "base/assert.h"
+#include "build/cloth_splits.h"
+#include "build/point_splits.h"
 #include "geometry/convex/mass_properties.h"
 #include "math/rotation.h"
-#include "state/particle_numbers.h"
 #include "state/tables.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <optional>
-#include <span>
+#include <utility>
 
 namespace hooke::build {
 
 namespace {
 
 using state::Deformable;
-using state::SpringClass;
 using state::Tables;
 using Corners = std::array<std::uint32_t, 3>;
 
@@ -36,10 +35,6 @@ constexpr double kStrainBesideCracks = 0.6;
 Corners corners_of(const Tables& t, std::uint32_t triangle) {
   const auto [a, b, c] = t.triangles.corners[triangle];
   return {a, b, c};
-}
-
-bool has(const Corners& corners, std::uint32_t particle) {
-  return corners[0] == particle || corners[1] == particle || corners[2] == particle;
 }
 
 /// A triangle's form at rest and now.
@@ -203,329 +198,31 @@ std::vector<Candidate> find_candidates(const Tables& t, const Deformable& cloth)
   return found;
 }
 
-/// Where a point splits.
-struct Crack {
-  std::uint32_t point = 0;           ///< Row of the particle that splits.
-  std::uint32_t added = 0;           ///< Row of the new one.
-  std::vector<std::uint32_t> kept;   ///< Triangles that keep the point.
-  std::vector<std::uint32_t> moved;  ///< Triangles that get the new one.
-  double kept_area = 0, moved_area = 0;
-};
-
-/// Parts the triangles of a point by the plane across a direction; nothing if all are on one side.
-std::optional<Crack> part_triangles(const Tables& t, const Deformable& cloth, const Candidate& at) {
-  Crack crack;
-  crack.point = at.particle;
-  crack.added = cloth.particles.end();
+/// The split of a point across a direction; nothing if all its triangles are on one side.
+std::optional<PointSplit> split_across(const Tables& t, const ElementMesh<3>& mesh, const Candidate& at) {
   const auto x = [&](std::uint32_t p) { return vector_cast<double>(t.particles.position[p].x); };
-  for (std::uint32_t i = cloth.triangles.first; i < cloth.triangles.end(); ++i) {
-    const Corners corners = corners_of(t, i);
-    if (!has(corners, at.particle)) continue;
+  std::vector<std::vector<std::uint32_t>> sides(2);
+  for (const std::uint32_t element : mesh.incidence.of(at.particle)) {
+    const Corners& corners = mesh.corners[element];
     const DVec3 middle = x(corners[0]) + x(corners[1]) + x(corners[2]) - 3.0 * x(at.particle);
-    const bool ahead = dot(middle, at.direction) > 0;
-    (ahead ? crack.kept : crack.moved).push_back(i);
-    (ahead ? crack.kept_area : crack.moved_area) += stretch_of(t, cloth, i).area;
+    sides[dot(middle, at.direction) > 0 ? 0 : 1].push_back(element);
   }
-  if (!(crack.kept_area > 0) || !(crack.moved_area > 0)) return std::nullopt;
-  if (crack.moved_area > crack.kept_area) {
-    std::swap(crack.moved, crack.kept);
-    std::swap(crack.moved_area, crack.kept_area);
-  }
-  return crack;
+  if (sides[0].empty() || sides[1].empty()) return std::nullopt;
+  std::vector<PointSplit> splits;
+  append_splits(mesh, at.particle, std::move(sides), splits);
+  if (splits.empty()) return std::nullopt;
+  return splits.front();
 }
 
-/// Whether one of the triangles has all of these particles.
-bool any_has(const Tables& t, const std::vector<std::uint32_t>& triangles,
-             std::span<const std::uint32_t> particles) {
-  return std::any_of(triangles.begin(), triangles.end(), [&](std::uint32_t triangle) {
-    const Corners corners = corners_of(t, triangle);
-    return std::all_of(particles.begin(), particles.end(), [&](std::uint32_t p) { return has(corners, p); });
-  });
-}
-
-enum class CrackSide : std::uint8_t { kNone, kKept, kMoved, kBoth };
-
-/// On which sides of a crack the triangles are that have the point and these particles.
-CrackSide side_of(const Tables& t, const Crack& crack, std::span<const std::uint32_t> particles) {
-  const bool kept = any_has(t, crack.kept, particles);
-  const bool moved = any_has(t, crack.moved, particles);
-  if (kept) return moved ? CrackSide::kBoth : CrackSide::kKept;
-  return moved ? CrackSide::kMoved : CrackSide::kNone;
-}
-
-/// Across which edge, opposite of the split point, which particle lies.
-struct Opposite {
-  std::uint32_t particle = 0;
-  CrackSide side = CrackSide::kNone;
-};
-
-/// Lists the particles across the outer edges of the triangles of a crack.
-std::vector<Opposite> list_opposites(const Tables& t, const Deformable& cloth, const Crack& crack) {
-  std::vector<bool> near(cloth.particles.count, false);
-  for (const std::vector<std::uint32_t>* side : {&crack.kept, &crack.moved}) {
-    for (const std::uint32_t triangle : *side) {
-      for (const std::uint32_t p : corners_of(t, triangle)) near[p - cloth.particles.first] = true;
-    }
-  }
-  std::vector<Opposite> opposites;
-  for (std::uint32_t i = cloth.triangles.first; i < cloth.triangles.end(); ++i) {
-    const Corners corners = corners_of(t, i);
-    if (has(corners, crack.point)) continue;
-    const auto is_near = [&](std::uint32_t p) { return near[p - cloth.particles.first]; };
-    if (std::count_if(corners.begin(), corners.end(), is_near) < 2) continue;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::array<std::uint32_t, 2> edge = {corners[k], corners[(k + 1) % 3]};
-      const CrackSide side = side_of(t, crack, edge);
-      if (side != CrackSide::kNone) opposites.push_back({corners[(k + 2) % 3], side});
-    }
-  }
-  return opposites;
-}
-
-/// Pairs of particles that lie beside an edge along the crack, on its two sides.
-std::vector<std::array<std::uint32_t, 2>> list_wings(const Tables& t, const Crack& crack) {
-  std::vector<std::array<std::uint32_t, 2>> wings;
-  for (const std::uint32_t kept : crack.kept) {
-    for (const std::uint32_t moved : crack.moved) {
-      const Corners a = corners_of(t, kept);
-      const Corners b = corners_of(t, moved);
-      for (const std::uint32_t shared : a) {
-        if (shared == crack.point || !has(b, shared)) continue;
-        const std::uint32_t left = a[0] ^ a[1] ^ a[2] ^ crack.point ^ shared;
-        const std::uint32_t right = b[0] ^ b[1] ^ b[2] ^ crack.point ^ shared;
-        wings.push_back({std::min(left, right), std::max(left, right)});
-      }
-    }
-  }
-  return wings;
-}
-
-/// Inserts a copy of row `from` at `at`.
-template <class Table>
-void insert_copy(Table& table, std::uint32_t from, std::uint32_t at) {
-  Table::for_each_column(table, [&](auto& column) {
-    const auto value = column[from];
-    column.insert(column.begin() + at, value);
-  });
-}
-
-/// Erases rows, in ascending order.
-template <class Table>
-void erase_rows(Table& table, const std::vector<std::uint32_t>& rows) {
-  if (rows.empty()) return;
-  Table::for_each_column(table, [&](auto& column) {
-    auto to = column.begin() + rows.front();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto end = i + 1 < rows.size() ? column.begin() + rows[i + 1] : column.end();
-      to = std::move(column.begin() + rows[i] + 1, end, to);
-    }
-    column.erase(to, column.end());
-  });
-}
-
-/// Raises the numbers of particles behind those of an object, for one that is added to it. Only later
-/// objects, and what holds them, have such numbers.
-void shift_particles(std::uint32_t object, Tables& t) {
-  if (object + 1 == t.objects.size()) return;
-  const std::uint32_t at = t.objects[object].particles.end();
-  const auto shift = [at](std::uint32_t& p) { p += p >= at ? 1 : 0; };
-  state::for_each_particle_number(t, t.objects[object + 1], shift);
-  for (std::uint32_t& p : t.contacts.particle) shift(p);
-  for (state::ElementContact& contact : t.element_contacts) {
-    for (std::uint32_t i = 0; i < contact.count; ++i) shift(contact.particle[i]);
-  }
-  for (state::RopeContact& contact : t.rope_contacts) {
-    for (std::uint32_t& p : contact.particle) shift(p);
-  }
-  for (std::size_t i = object + 1; i < t.objects.size(); ++i) ++t.objects[i].particles.first;
-}
-
-/// Appends the new particle, and shares what the split one had between the two.
-void add_particle(std::uint32_t object, const Crack& crack, Tables& t) {
-  shift_particles(object, t);
-  Deformable& cloth = t.objects[object];
-  state::Particles& particles = t.particles;
-  insert_copy(particles, crack.point, crack.added);
-  particles.row_of[crack.added] = cloth.particles.count;
-  ++cloth.particles.count;
-  const double share = crack.moved_area / (crack.kept_area + crack.moved_area);
-  const auto divide = [&](auto& column) {
-    const Real all = column[crack.point];
-    column[crack.added] = static_cast<Real>(share * static_cast<double>(all));
-    column[crack.point] = all - column[crack.added];
-  };
-  divide(particles.mass);
-  divide(particles.charge);
-  divide(particles.viscous_drag);
-  divide(particles.drag_area);
-  particles.force[crack.added] = static_cast<Real>(share) * particles.force[crack.point];
-  particles.force[crack.point] -= particles.force[crack.added];
-  const bool held = !(particles.velocity[crack.point].inverse_mass > Real(0));
-  particles.velocity[crack.added].inverse_mass = Real(1) / particles.mass[crack.added];
-  if (!held) particles.velocity[crack.point].inverse_mass = Real(1) / particles.mass[crack.point];
-  auto rest = std::make_shared<std::vector<Vec3>>(*cloth.surface.rest_points);
-  rest->push_back((*rest)[crack.point - cloth.particles.first]);
-  cloth.surface.rest_points = std::move(rest);
-}
-
-/// Erases rows of an object, in ascending order; rows of later objects move up.
-template <class Table>
-void erase_rows_of(std::uint32_t object, state::Rows Deformable::*rows,
-                   const std::vector<std::uint32_t>& gone, Table& table, Tables& t) {
-  erase_rows(table, gone);
-  const auto count = static_cast<std::uint32_t>(gone.size());
-  (t.objects[object].*rows).count -= count;
-  for (std::size_t i = object + 1; i < t.objects.size(); ++i) (t.objects[i].*rows).first -= count;
-}
-
-/// Springs that do not just stay or move with the point.
-struct PartedSprings {
-  std::vector<std::uint32_t> gone;     ///< Those across the crack.
-  std::vector<std::uint32_t> doubled;  ///< Those along it.
-};
-
-/// Moves springs of the point to the side that they are on, and lists the others.
-PartedSprings move_springs(const Deformable& cloth, const Crack& crack, Tables& t) {
-  state::Springs& springs = t.springs;
-  const std::vector<Opposite> opposites = list_opposites(t, cloth, crack);
-  const auto wings = list_wings(t, crack);
-  const auto side_across = [&](std::uint32_t other) {
-    const auto at = std::find_if(opposites.begin(), opposites.end(),
-                                 [other](const Opposite& o) { return o.particle == other; });
-    return at != opposites.end() ? at->side : CrackSide::kNone;
-  };
-  PartedSprings parted;
-  for (std::uint32_t i = cloth.springs.first; i < cloth.springs.end(); ++i) {
-    std::uint32_t& a = springs.particle_a[i];
-    std::uint32_t& b = springs.particle_b[i];
-    if (a != crack.point && b != crack.point) {
-      if (springs.kind[i] != SpringClass::kShear) continue;
-      const std::array<std::uint32_t, 2> pair = {std::min(a, b), std::max(a, b)};
-      const bool crosses = std::find(wings.begin(), wings.end(), pair) != wings.end();
-      if (crosses) parted.gone.push_back(i);
-      continue;
-    }
-    const std::uint32_t other = a == crack.point ? b : a;
-    CrackSide side = side_of(t, crack, {&other, 1});
-    if (side == CrackSide::kNone) side = side_across(other);
-    if (side == CrackSide::kMoved) (a == crack.point ? a : b) = crack.added;
-    if (side == CrackSide::kBoth) parted.doubled.push_back(i);
-    if (side == CrackSide::kNone) parted.gone.push_back(i);
-  }
-  return parted;
-}
-
-/// Moves springs of the point to the side that they are on. Those along the crack are there twice, and those
-/// across it go.
-void part_springs(std::uint32_t object, const Crack& crack, Tables& t) {
-  Deformable& cloth = t.objects[object];
-  state::Springs& springs = t.springs;
-  const PartedSprings parted = move_springs(cloth, crack, t);
-  for (const std::uint32_t i : parted.doubled) {
-    const std::uint32_t copy = cloth.springs.end();
-    insert_copy(springs, i, copy);
-    (springs.particle_a[copy] == crack.point ? springs.particle_a : springs.particle_b)[copy] = crack.added;
-    ++cloth.springs.count;
-  }
-  for (std::size_t i = object + 1; i < t.objects.size(); ++i)
-    t.objects[i].springs.first += static_cast<std::uint32_t>(parted.doubled.size());
-  erase_rows_of(object, &Deformable::springs, parted.gone, springs, t);
-}
-
-/// Moves bends likewise. Those about an edge along the crack go.
-void part_bends(std::uint32_t object, const Crack& crack, Tables& t) {
-  const Deformable& cloth = t.objects[object];
-  std::vector<std::uint32_t> gone;
-  for (std::uint32_t i = cloth.bends.first; i < cloth.bends.end(); ++i) {
-    state::Bends::Stencil& s = t.bends.stencil[i];
-    std::uint32_t* const at[] = {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b};
-    const auto own =
-        std::find_if(std::begin(at), std::end(at), [&](const std::uint32_t* p) { return *p == crack.point; });
-    if (own == std::end(at)) continue;
-    const bool is_edge = own - std::begin(at) < 2;
-    const std::uint32_t end = *own == &s.edge_a ? s.edge_b : s.edge_a;
-    const CrackSide first = is_edge ? side_of(t, crack, std::array{end, s.wing_a})
-                                    : side_of(t, crack, std::array{s.edge_a, s.edge_b});
-    const CrackSide second = is_edge ? side_of(t, crack, std::array{end, s.wing_b}) : first;
-    if (first != second || first == CrackSide::kNone) {
-      gone.push_back(i);
-    } else if (first == CrackSide::kMoved) {
-      **own = crack.added;
-    }
-  }
-  erase_rows_of(object, &Deformable::bends, gone, t.bends, t);
-}
-
-/// Bit of the triangle's edge from or to `point`, to or from `end`; 0 if it has none.
-std::uint8_t edge_bit(const Corners& corners, std::uint32_t point, std::uint32_t end) {
-  for (unsigned k = 0; k < 3; ++k) {
-    const std::uint32_t from = corners[k];
-    const std::uint32_t to = corners[(k + 1) % 3];
-    if ((from == point && to == end) || (from == end && to == point))
-      return static_cast<std::uint8_t>(1U << k);
-  }
-  return 0;
-}
-
-/// Each edge along the crack belongs to a triangle of this side of it.
-void own_edges(const Crack& crack, const std::vector<std::uint32_t>& side, Tables& t) {
-  for (const std::uint32_t triangle : side) {
-    const Corners corners = corners_of(t, triangle);
-    for (const std::uint32_t end : corners) {
-      if (end == crack.point || side_of(t, crack, {&end, 1}) != CrackSide::kBoth) continue;
-      const auto owns = [&](std::uint32_t other) {
-        return (t.triangles.own_edges[other] & edge_bit(corners_of(t, other), crack.point, end)) != 0;
-      };
-      if (std::none_of(side.begin(), side.end(), owns))
-        t.triangles.own_edges[triangle] |= edge_bit(corners, crack.point, end);
-    }
-  }
-}
-
-/// A hook between points follows the triangles that have them all. One at the point stays with it.
-void part_hooks(std::uint32_t object, const Crack& crack, Tables& t) {
-  for (state::Hook& hook : t.hooks) {
-    for (state::HookPlace* end : {&hook.a, &hook.b}) {
-      if (end->particle_count < 2 || end->object != object) continue;
-      const std::span particles = std::span(end->particle).first(end->particle_count);
-      const auto own = std::find(particles.begin(), particles.end(), crack.point);
-      if (own != particles.end() && side_of(t, crack, particles) == CrackSide::kMoved) *own = crack.added;
-    }
-  }
-  ++t.hook_revision;
-}
-
-void move_corners(const Crack& crack, Tables& t) {
-  for (const std::uint32_t triangle : crack.moved) {
-    state::Triangles::Corners& c = t.triangles.corners[triangle];
-    for (std::uint32_t* corner : {&c.a, &c.b, &c.c}) {
-      if (*corner == crack.point) *corner = crack.added;
-    }
-  }
-}
-
-/// Index of a particle in the order of the maker.
-std::uint32_t index_of(const Tables& t, const Deformable& cloth, std::uint32_t particle) {
-  const auto first = t.particles.row_of.begin() + cloth.particles.first;
-  const auto at = std::find(first, first + cloth.particles.count, particle - cloth.particles.first);
-  HOOKE_ASSERT(at != first + cloth.particles.count);
-  return static_cast<std::uint32_t>(at - first);
-}
-
-void split(std::uint32_t object, const Crack& crack, Tables& t) {
-  const std::uint32_t from = index_of(t, t.objects[object], crack.point);
-  add_particle(object, crack, t);
-  part_springs(object, crack, t);
-  part_bends(object, crack, t);
-  own_edges(crack, crack.kept, t);
-  own_edges(crack, crack.moved, t);
-  part_hooks(object, crack, t);
-  move_corners(crack, t);
-  Deformable& cloth = t.objects[object];
-  cloth.split_from.push_back(from);
-  cloth.gas = 0;
-  std::erase_if(t.element_contacts, [object](const state::ElementContact& c) { return c.object == object; });
-  state::note_change(t, cloth);
+/// Splits points that a blade has scored, where a tear has reached them.
+void open_scored(std::uint32_t object, Tables& t) {
+  if (t.objects[object].scored.empty()) return;
+  const ElementMesh<3> mesh = triangles_of(t, t.objects[object]);
+  const std::vector<ElementPair> scored = t.objects[object].scored;
+  const std::vector<PointSplit> splits = find_splits<3>(mesh, scored, scored);
+  const auto after = corners_after(mesh, t.objects[object].particles, splits);
+  split_cloth(object, mesh, splits, t);
+  t.objects[object].scored = still_joined<3>(scored, after);
 }
 
 }  // namespace
@@ -534,29 +231,31 @@ void tear_cloth(std::uint32_t object, double time, Tables& t, std::vector<ClothT
   HOOKE_ASSERT(object < t.objects.size() && t.objects[object].surface.rest_points != nullptr);
   if (!any_strained(t, t.objects[object])) return;
   const std::vector<Candidate> candidates = find_candidates(t, t.objects[object]);
+  if (candidates.empty()) return;
+  const Deformable& cloth = t.objects[object];
+  const ElementMesh<3> mesh = triangles_of(t, cloth);
+  const std::vector<std::uint32_t> index = indices_of(t, cloth);
   std::vector<std::uint32_t> near;  // Points beside those that split in this step, which relieves them.
-  std::size_t count = 0;
+  std::vector<PointSplit> splits;
   for (const Candidate& candidate : candidates) {
-    if (count == kMostTears) return;
+    if (splits.size() == kMostTears) break;
     if (std::find(near.begin(), near.end(), candidate.particle) != near.end()) continue;
-    const std::optional<Crack> crack = part_triangles(t, t.objects[object], candidate);
-    if (!crack) continue;
-    for (const std::vector<std::uint32_t>* side : {&crack->kept, &crack->moved}) {
-      for (const std::uint32_t triangle : *side) {
-        for (const std::uint32_t p : corners_of(t, triangle)) near.push_back(p);
-      }
-    }
-    const Deformable& cloth = t.objects[object];
+    std::optional<PointSplit> split = split_across(t, mesh, candidate);
+    if (!split) continue;
+    for (const std::uint32_t element : mesh.incidence.of(candidate.particle))
+      near.insert(near.end(), mesh.corners[element].begin(), mesh.corners[element].end());
     const DVec3 offset = vector_cast<double>(t.particles.position[candidate.particle].x);
     events.push_back({.cloth = t.cloth_slots.id_of(cloth.slot),
-                      .point = index_of(t, cloth, candidate.particle),
-                      .added = cloth.particles.count,
+                      .point = index[candidate.particle - cloth.particles.first],
+                      .added = cloth.particles.count + static_cast<std::uint32_t>(splits.size()),
                       .place = cloth.origin + offset,
                       .strain = static_cast<Real>(candidate.strain),
-                      .time = time});
-    split(object, *crack, t);
-    ++count;
+                      .time = time,
+                      .burst = splits.empty() && cloth.gas > 0});
+    splits.push_back(std::move(*split));
   }
+  split_cloth(object, mesh, splits, t);
+  open_scored(object, t);
 }
 
 }  // namespace hooke::build

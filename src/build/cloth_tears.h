@@ -14,7 +14,8 @@
 /// of a point exceeds what the cloth can take, the point splits: its triangles before and behind the plane
 /// across that direction part. The side with more area keeps the point, with its pin, its hooks and its
 /// number. The other gets a new point at the end of the object. Both get their share of the mass by area, and
-/// the same place and velocity. Springs along the crack are there twice then; what led across it is gone.
+/// the same place and velocity. Springs along the crack are shared out; what led across it is gone
+/// (build/cloth_splits.h).
 
 namespace hooke::build {
 

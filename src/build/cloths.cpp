@@ -84,13 +84,6 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
                  "needs a stretch_stiffness that is not rigid; tear_strain does not");
   }
   if (desc.tear_strain) checks.positive("tear_strain", static_cast<double>(*desc.tear_strain));
-  if (can_tear(desc)) {
-    const char* const field = desc.strength ? "strength" : "tear_strain";
-    checks
-        .require(desc.bend != ClothDesc::Bend::kSpring, field,
-                 "needs a bend other than springs, which lead across cracks")
-        .require(!desc.tethers.value_or(false), field, "excludes tethers, which hold what should tear");
-  }
   if (desc.pressure) checks.in_range("pressure", static_cast<double>(*desc.pressure), -1e5, 1e8);
   if (desc.total_mass) checks.mass("total_mass", static_cast<double>(*desc.total_mass));
   check_points(checks, desc.pins, desc.loads, count);

@@ -102,8 +102,13 @@ struct Deformable {
   Real strength = kRigid;          ///< Tension that a rope can take [N].
   bool has_gaps = false;           ///< Some segment of the rope is gone.
   Real tear_strain = kRigid;       ///< Strain at which a cloth tears.
-  /// For each point that a cloth got by tearing: the point that it split from, in the maker's order.
+  Real tear_stress = kRigid;       ///< Principal stress at which a solid tears [Pa].
+  /// For each point that a cloth or a solid got by tearing or cutting: the point that it split from, in the
+  /// maker's order.
   std::vector<std::uint32_t> split_from = {};
+  /// Pairs of triangles or tetrahedra that a blade has parted, but which still have an edge or a face in
+  /// common, because all around it holds; counted from the object's first one, the lower first, in order.
+  std::vector<std::array<std::uint32_t, 2>> scored = {};
   Real yield_angle = kRigid;                         ///< Yield angle of a cloth's bends [rad].
   Real yield_stress = kRigid;                        ///< Yield stress of a solid [Pa].
   std::shared_ptr<const RestEdges> rest_edges = {};  ///< Set for a solid that yields; by its tetrahedra.

@@ -172,7 +172,16 @@ void move_hooks_off_gaps(std::uint32_t object, state::Tables& t) {
   ++t.hook_revision;
 }
 
-/// Notes a segment that broke, and that its rope goes on as two.
+/// Notes that a segment of a rope is gone, so that the rope goes on as two.
+void open_gap(state::Deformable& rope, std::uint32_t segment, state::Segments& segments) {
+  const std::uint32_t row = rope.segments.first + segment;
+  segments.hold[row] = state::SegmentHold::kGone;
+  segments.tension[row] = Real(0);
+  segments.limited[row] = 0;
+  rope.has_gaps = true;
+}
+
+/// Notes a segment that broke.
 void divide(std::uint32_t object, std::uint32_t segment, state::Tables& t,
             std::vector<RopeBreakEvent>& breaks) {
   state::Deformable& rope = t.objects[object];
@@ -185,13 +194,17 @@ void divide(std::uint32_t object, std::uint32_t segment, state::Tables& t,
                     .point = rope.origin + 0.5 * ends,
                     .force = t.segments.needed_force[row],
                     .time = t.segments.broke_at[row]});
-  t.segments.hold[row] = state::SegmentHold::kGone;
-  t.segments.tension[row] = Real(0);
-  t.segments.limited[row] = 0;
-  rope.has_gaps = true;
+  open_gap(rope, segment, t.segments);
 }
 
 }  // namespace
+
+void cut_segments(std::uint32_t object, std::span<const std::uint32_t> segments, state::Tables& t) {
+  state::Deformable& rope = t.objects[object];
+  for (const std::uint32_t segment : segments) open_gap(rope, segment, t.segments);
+  move_hooks_off_gaps(object, t);
+  state::note_change(t, rope);
+}
 
 void drop_broken_segments(WorldData& world) {
   state::Tables& t = world.tables;

@@ -4,6 +4,7 @@
 #include "world/world_data.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -37,6 +38,9 @@ void drop_broken_hooks(WorldData& world);
 /// such a segment go to the point at which they had the larger share; one that slides along the rope stays on
 /// the part there, and goes if that part is a single point.
 void drop_broken_segments(WorldData& world);
+
+/// Divides a rope at segments, which hold no more. Hooks within them go where drop_broken_segments says.
+void cut_segments(std::uint32_t object, std::span<const std::uint32_t> segments, state::Tables& tables);
 
 /// Removes the hooks of bodies before the bodies themselves are removed. `goes` says by body row which are.
 void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& tables);

@@ -81,12 +81,20 @@ void add_surface(StateHash& hash, const state::Deformable& object) {
   add(hash, touches, filter.category, filter.mask, filter.group);
 }
 
-/// Adds whether segments hold, of ropes that can snap.
+/// Adds whether segments hold, of ropes that can snap or were cut.
 void add_strength(StateHash& hash, const state::Deformable& object, const state::Segments& segments) {
-  if (!(object.strength < kRigid)) return;
+  if (!(object.strength < kRigid) && !object.has_gaps) return;
   hash.add(object.strength);
   for (std::uint32_t row = object.segments.first; row < object.segments.end(); ++row)
     hash.add(segments.hold[row]);
+}
+
+/// Adds what cloths and solids take, and where they have split.
+void add_tears(StateHash& hash, const state::Deformable& object) {
+  if (object.tear_strain < kRigid || !object.split_from.empty())
+    add(hash, object.tear_strain, object.split_from);
+  if (object.tear_stress < kRigid) hash.add(object.tear_stress);
+  if (!object.scored.empty()) hash.add(object.scored);
 }
 
 void add_segments(StateHash& hash, const state::Segments& s) {
@@ -105,7 +113,7 @@ void add_objects(StateHash& hash, const Tables& t) {
     add_rest_form(hash, o);
     add_surface(hash, o);
     add_strength(hash, o, t.segments);
-    if (o.tear_strain < kRigid) add(hash, o.tear_strain, o.split_from);
+    add_tears(hash, o);
   }
   add_columns(hash, t.particles);
   add_columns(hash, t.springs);

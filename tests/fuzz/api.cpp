@@ -464,9 +464,24 @@ class Trial {
     const PointRef p = pick_point();
     if (random_.chance(0.5)) {
       judge("pin", world_.pin(p, pick_motion()));
+    } else if (random_.chance(0.5)) {
+      cut();
     } else {
       judge("unpin", world_.unpin(p));
     }
+  }
+  /// Cuts everything, or one of each kind, by a blade that sweeps a surface anywhere.
+  void cut() {
+    CutDesc desc = {.from = {place(), place()}, .to = {place(), place()}};
+    if (random_.chance(0.3)) desc.cloths = {model_.cloths.pick(random_)};
+    if (random_.chance(0.3)) desc.ropes = {model_.ropes.pick(random_)};
+    if (random_.chance(0.3)) desc.solids = {model_.solids.pick(random_)};
+    const double before = world_.measure().momentum.x;
+    const Result<CutResult> cut = world_.cut(desc);
+    judge("cut", cut);
+    const double after = world_.measure().momentum.x;
+    expect(std::fabs(after - before) <= 1e-6 * (1 + std::fabs(before)) || !std::isfinite(before),
+           "a cut changed the momentum");
   }
   void set_hook() {
     const HookId hook = model_.hooks.pick(random_);

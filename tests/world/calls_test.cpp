@@ -175,6 +175,7 @@ std::vector<Call> calls_that_push(const Ids& h) {
       {"set_steering", [=](World& w) { return w.set_steering(h.hook, 1).has_value(); }},
       {"pin", [=](World& w) { return w.pin(p).has_value(); }},
       {"unpin", [=](World& w) { return w.unpin(point(h.cloth, 0)).has_value(); }},
+      {"cut", [](World& w) { return w.cut({}).has_value(); }},
       {"set_gravity", [](World& w) { return w.set_gravity({}).has_value(); }},
       {"set_wind",
        [](World& w) {

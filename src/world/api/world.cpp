@@ -381,13 +381,6 @@ std::vector<Real> World::torques(RopeId id) const {
                        [](const state::TwistSpan& span, double) { return span.mean_torque; });
 }
 
-std::vector<std::uint32_t> World::splits(ClothId id) const {
-  const world::Reading reading(data_);
-  const std::uint32_t row = reading.tables().cloth_slots.find(id);
-  if (row == reading.tables().cloth_slots.kNone) return {};
-  return reading.tables().objects[row].split_from;
-}
-
 std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
   const world::Reading reading(data_);
   const std::uint32_t row = reading.tables().cloth_slots.find(id);
