@@ -550,6 +550,12 @@ struct SolidDesc {
   /// sigma_y / E. The stress of `damping` comes on top. No part is stretched for good beyond 5 times or below
   /// a fifth.
   Real yield_stress = kRigid;
+  /// Largest principal stress that the solid takes [Pa], positive; any by default. Where the mean stress of
+  /// the tetrahedra at a point exceeds it, the point splits, across the direction of that stress: they part
+  /// along the faces nearest to that plane. Beside a crack 60 % of it are enough, so that tears run. At most
+  /// 8 points a step split; Events::solid_tears says which. It needs tetrahedra. What has come apart goes
+  /// through the other part unless `self_contact` is set.
+  std::optional<Real> strength = {};
   /// Points keep half of it from what they touch [m]. Positive. Of a surface that touches another, half of
   /// the mean edge counts at most.
   Real thickness = Real(0.004);

@@ -71,6 +71,16 @@ struct ClothTearEvent {
   bool burst = false;       ///< The cloth was closed, and lost its gas by this tear.
 };
 
+/// A point of a solid that split because the solid was stressed more than SolidDesc::strength.
+struct SolidTearEvent {
+  SolidId solid = {};       ///< The solid.
+  std::uint32_t point = 0;  ///< The point that split; it keeps its pin and its hooks.
+  std::uint32_t added = 0;  ///< The point that the other side of the crack got: the solid's last one then.
+  DVec3 place = {};         ///< Where both were [m].
+  Real stress = Real(0);    ///< Largest principal stress there [Pa].
+  double time = 0;          ///< Time of the world at the end of the step [s].
+};
+
 /// All events of one step. Lists of bodies are in the order of the bodies' creation, and the same for any
 /// number of workers. A body that was removed while it touched something, or was in a sensor, ends that in
 /// the next step; its id is stale by then.
@@ -88,6 +98,7 @@ struct Events {
   /// Segments of ropes that broke, in order of time, then of the ropes' creation, then along the rope.
   std::vector<RopeBreakEvent> rope_breaks;
   std::vector<ClothTearEvent> tears;        ///< Points of cloths that split, in order of cloths' creation.
+  std::vector<SolidTearEvent> solid_tears;  ///< Points of solids that split, likewise.
 };
 
 }  // namespace hooke

@@ -66,6 +66,10 @@ Checks check(const SolidDesc& desc) {
       .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.total_mass) checks.mass("total_mass", static_cast<double>(*desc.total_mass));
+  if (desc.strength) {
+    checks.positive("strength", static_cast<double>(*desc.strength))
+        .require(!is_matched(desc), "strength", "needs tetrahedra, which shape matching has not");
+  }
   if (!is_matched(desc)) return checks;
   return checks.stiffness("match_hz", static_cast<double>(desc.match_hz))
       .in_range("match_damping_ratio", static_cast<double>(desc.match_damping_ratio), 0, 100)
@@ -417,6 +421,7 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   object.friction = desc.contact.friction;
   object.surface = contact.value();
   object.yield_stress = desc.yield_stress;
+  object.tear_stress = desc.strength.value_or(kRigid);
   if (desc.yield_stress < kRigid) object.rest_edges = rest_edges_of(mesh);
   object.skin = body.value().skin;
   append_tetrahedra(mesh, desc, tables);

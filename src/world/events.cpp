@@ -199,7 +199,8 @@ void note_closing_pairs(WorldData& world, Real dt) {
 void clear_events(Events& events) {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
   clear(events.contact_begins, events.contact_ends, events.hits, events.sensor_enters, events.sensor_leaves,
-        events.fell_asleep, events.woke_up, events.breaks, events.rope_breaks, events.tears);
+        events.fell_asleep, events.woke_up, events.breaks, events.rope_breaks, events.tears,
+        events.solid_tears);
 }
 
 void gather_events(WorldData& world) {

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "build/cloth_tears.h"
+#include "build/solid_tears.h"
 #include "solver/check_routes.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/pressed_points.h"
@@ -415,12 +416,14 @@ void flow_cloths(WorldData& world) {
   });
 }
 
-void tear_cloths(WorldData& world, double dt) {
+void tear_deformables(WorldData& world, double dt) {
   state::Tables& t = world.tables;
-  std::vector<ClothTearEvent>& tears = world.last_step.events.tears;
-  tears.clear();
+  Events& events = world.last_step.events;
+  events.tears.clear();
+  events.solid_tears.clear();
   for (std::uint32_t i = 0; i < t.objects.size(); ++i) {
-    if (t.objects[i].tear_strain < kRigid) build::tear_cloth(i, t.time + dt, t, tears);
+    if (t.objects[i].tear_strain < kRigid) build::tear_cloth(i, t.time + dt, t, events.tears);
+    if (t.objects[i].tear_stress < kRigid) build::tear_solid(i, t.time + dt, t, events.solid_tears);
   }
 }
 

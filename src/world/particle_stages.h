@@ -34,8 +34,8 @@ void solve_bends(WorldData& world);
 /// slide along ropes, and coupled groups are built. Their bodies get gravity and contact impulses in shares,
 /// and mass shares begin. `first` marks the first particle substep of a substep.
 void begin_coupled_groups(WorldData& world, Real h, bool first);
-/// Splits points of cloths that are strained more than they take, and lists them.
-void tear_cloths(WorldData& world, double dt);
+/// Splits points of cloths and solids that are strained or stressed more than they take, and lists them.
+void tear_deformables(WorldData& world, double dt);
 /// Solves rope systems and coupled groups up to `end_time` [s]. `first` marks the first particle substep of a
 /// step.
 void solve_ropes(WorldData& world, double end_time, Real h, bool first);

@@ -106,7 +106,7 @@ void finish(WorldData& w, double dt, StepReport& report) {
   report.rows_quarantined += world::quarantine_non_finite(w);
   world::flow_cloths(w);
   world::rebase_origins(w);
-  world::tear_cloths(w, dt);
+  world::tear_deformables(w, dt);
   world::end_step(w, dt, report);
 }
 

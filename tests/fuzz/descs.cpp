@@ -208,8 +208,7 @@ ClothDesc make_cloth(Random& random, DVec3 place, const Meshes& meshes, Taste ta
     cloth.yield_angle = kRigid;
   if (random.chance(0.3)) cloth.extension_max = random.real(0.02, 0.3);
   cloth.tethers = random.chance(0.2);
-  const bool may_tear = cloth.bend != ClothDesc::Bend::kSpring && !*cloth.tethers;
-  if (may_tear && random.chance(0.3)) cloth.tear_strain = random.real(0.02, 0.5);
+  if (random.chance(0.3)) cloth.tear_strain = random.real(0.02, 0.5);
   cloth.pins = make_pins(random, points, taste);
   cloth.loads = make_loads(random, points);
   if (random.chance(0.3)) cloth.velocity = random.vector(2);
@@ -235,6 +234,8 @@ SolidDesc make_solid(Random& random, DVec3 place, const Meshes& meshes) {
   solid.poisson_ratio = random.real(0, 0.499);
   solid.damping = random.real(0, 0.02);
   if (random.chance(0.1)) solid.yield_stress = scaled(random, 3e3);
+  if (solid.elasticity == SolidDesc::Elasticity::kTetrahedra && random.chance(0.1))
+    solid.strength = scaled(random, 3e3);
   if (random.chance(0.2)) solid.pins = {{0}};
   if (random.chance(0.3)) solid.velocity = random.vector(2);
   solid.contact = make_contact(random);
