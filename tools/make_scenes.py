@@ -12,6 +12,7 @@ import pathlib
 import struct
 import sys
 
+from breaking_scenes import BREAKING_SCENES
 from cloth_scenes import CLOTH_SCENES
 from concave_scenes import chain_of_links, gears, torus_on_peg
 from field_scenes import FIELD_SCENES
@@ -816,7 +817,8 @@ SCENES = [
     slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
     convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES,
-    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES, *CLOTH_SCENES, *SOFT_CONTACT_SCENES, *STRUCTURE_SCENES
+    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES, *CLOTH_SCENES, *SOFT_CONTACT_SCENES, *STRUCTURE_SCENES,
+    *BREAKING_SCENES
 ]
 PAPER = [fig5, fig6, fig7, wall, rollback_room, gears, torus_on_peg, chain_of_links,
          bsp_walk]  # in the folder paper

@@ -66,7 +66,7 @@ bool passed(const Simulation& simulation) {
          std::all_of(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.passed; });
 }
 
-/// Returns the hooks that broke and the ropes that snapped, in the order of time.
+/// Returns the hooks that broke, the ropes that snapped and what tore or was cut, in the order of time.
 static std::vector<const SceneObject*> broken_objects(const Simulation& simulation) {
   std::vector<const SceneObject*> broken;
   for (const SceneObject& object : simulation.objects()) {
@@ -77,15 +77,25 @@ static std::vector<const SceneObject*> broken_objects(const Simulation& simulati
   return broken;
 }
 
+/// Returns when and how a cloth or a solid tore or was cut first, and how many points it got since.
+static Json json_of_tear(const World& world, const SceneObject& object) {
+  const bool is_cloth = object.kind == SceneObject::Kind::kCloth;
+  Json json = {{is_cloth ? "cloth" : "solid", object.name}, {"time", object.broke.time}};
+  if (object.cut_by.empty()) {
+    json[is_cloth ? "strain" : "stress"] = object.tore_at;
+  } else {
+    json["cut_by"] = object.cut_by;
+  }
+  json["points"] = is_cloth ? world.splits(object.cloth).size() : world.splits(object.solid).size();
+  return json;
+}
+
 static Json json_of_breaks(const Simulation& simulation) {
   Json list = Json::array();
   const World& world = simulation.world();
   for (const SceneObject* object : broken_objects(simulation)) {
-    if (object->kind == SceneObject::Kind::kCloth) {
-      list.push_back({{"cloth", object->name},
-                      {"time", object->broke.time},
-                      {"strain", object->tore_at},
-                      {"points", world.splits(object->cloth).size()}});
+    if (object->kind == SceneObject::Kind::kCloth || object->kind == SceneObject::Kind::kSolid) {
+      list.push_back(json_of_tear(world, *object));
       continue;
     }
     const bool is_rope = object->kind == SceneObject::Kind::kRope;
@@ -94,6 +104,7 @@ static Json json_of_breaks(const Simulation& simulation) {
                     {"force", object->broke.force},
                     {"torque", object->broke.torque}});
     if (is_rope) list.back()["segments"] = world.broken_segments(object->rope);
+    if (!object->cut_by.empty()) list.back()["cut_by"] = object->cut_by;
   }
   return list;
 }
@@ -112,6 +123,7 @@ static std::string count_of_breaks(const std::vector<const SceneObject*>& broken
   add(SceneObject::Kind::kHook, "hook");
   add(SceneObject::Kind::kRope, "rope");
   add(SceneObject::Kind::kCloth, "cloth");
+  add(SceneObject::Kind::kSolid, "solid");
   return text + " in all";
 }
 
@@ -122,7 +134,11 @@ static std::string text_of_breaks(const Simulation& simulation) {
   const SceneObject& object = *broken.front();
   const BreakEvent& first = object.broke;
   std::string text = "broke     '" + object.name + "' first" + text_of(", at %.6g s, as it ", first.time);
-  if (object.kind == SceneObject::Kind::kCloth) {
+  if (!object.cut_by.empty()) {
+    text += "was cut by '" + object.cut_by + "'";
+  } else if (object.kind == SceneObject::Kind::kSolid) {
+    text += text_of("was stressed by %.4g Pa", static_cast<double>(object.tore_at));
+  } else if (object.kind == SceneObject::Kind::kCloth) {
     text += text_of("was strained by %.3g %%", 100 * static_cast<double>(object.tore_at));
   } else {
     text += text_of("needed %.4g N", static_cast<double>(first.force));

@@ -151,6 +151,11 @@ struct SceneFracture {
   FractureDesc desc = {};     ///< How it is divided. Places are in the body's frame.
   Real strength = Real(1e6);  ///< Stress at which the glue between the cells breaks [Pa], or kRigid.
 };
+/// The sharp edge of a kinematic body: it cuts the ropes, cloths and solids that it sweeps (World::cut).
+struct SceneBlade {
+  std::array<Vec3, 2> edge = {};       ///< Ends of the edge in the body's frame [m].
+  std::vector<std::string> cuts = {};  ///< Names of what it cuts, arrays as a whole; empty for all.
+};
 /// A body.
 struct SceneBody {
   SceneTag tag = {};                  ///< Name, material, friction and copies.
@@ -161,6 +166,7 @@ struct SceneBody {
   /// Replaces a dynamic box, hull or mesh by its cells, named `name[0]`, ..., of all copies one after the
   /// other, and the hooks between them, `name_glue[0]`, ...
   std::optional<SceneFracture> fracture = {};
+  std::optional<SceneBlade> blade = {};  ///< Makes a blade of a kinematic body.
 };
 /// A rope.
 struct SceneRope {
@@ -332,8 +338,8 @@ struct SceneExpectation {
     kAngle,  ///< World::hook_value of a hinge [rad].
     kWay,    ///< World::hook_value of a slider, a wheel or a distance [m].
     kGap,    ///< World::hook_gap of a hook; of the world, the largest [m].
-    /// 1 for a hook that has broken; how many segments of a rope have, or how many points of a cloth have
-    /// split; of the world, the sum.
+    /// 1 for a hook that has broken; how many segments of a rope have broken or were cut, or how many points
+    /// of a cloth or a solid have split; of the world, the sum.
     kBroken,
   };
   /// How the achieved figure is compared with `value`.
@@ -465,8 +471,9 @@ struct SceneObject {
     std::string material = {};                ///< Name of `look`, as SceneObject::material.
   };
 
-  Shape shape = {};              ///< Shape of a body.
-  std::vector<Part> parts = {};  ///< Shapes of a compound body.
+  Shape shape = {};                      ///< Shape of a body.
+  std::vector<Part> parts = {};          ///< Shapes of a compound body.
+  std::optional<SceneBlade> blade = {};  ///< Edge of a body that is a blade.
   /// Radius of a rope's strand or of the first particle [m]; half the thickness of a cloth or solid.
   Real radius = Real(0);
   double rest_length = 0;                  ///< Length of a rope at rest [m].
@@ -474,10 +481,12 @@ struct SceneObject {
   std::uint32_t rows = 0;                  ///< Rows of a cloth's grid; 0 for a mesh.
   HookKind hook_kind = HookKind::kBall;    ///< Kind of a hook.
   std::array<std::string, 2> hooked = {};  ///< Names of what a hook holds, a and b; empty for the world.
-  /// Whether a hook has broken, whose id is stale then, a rope has snapped or a cloth has torn.
+  /// Whether a hook has broken, whose id is stale then, a rope has snapped, a cloth or a solid has torn, or
+  /// one of these was cut.
   bool broken = false;
-  Real tore_at = Real(0);  ///< Strain at which a cloth tore first, if it has.
-  BreakEvent broke = {};   ///< How a hook broke, or where a rope snapped first, without its HookId.
+  Real tore_at = Real(0);   ///< Strain at which a cloth tore first, or stress at which a solid did [Pa].
+  std::string cut_by = {};  ///< Name of the blade, if it was cut before it broke or tore.
+  BreakEvent broke = {};    ///< How a hook broke, or where a rope snapped first, without its HookId.
   std::shared_ptr<const Model> model = {};   ///< Model of a mesh body, cloth or solid; of a hull, its faces.
   std::shared_ptr<const Model> visual = {};  ///< Model that is drawn in place of a body's shape; may be null.
   double mesh_volume = 0;  ///< Volume of the closed surface that a solid fills [m^3]; 0 for others.

@@ -84,6 +84,38 @@ class SplitSkin {
                        [&](std::uint32_t p) { return std::find(b.begin(), b.end(), p) != b.end(); });
   }
 
+  /// Whether two tetrahedra hang together no more by those around them.
+  [[nodiscard]] bool have_parted(std::uint32_t a, std::uint32_t b) const {
+    if (a == b) return false;
+    std::vector<std::uint32_t> around;
+    for (const std::uint32_t element : {a, b}) {
+      for (const std::uint32_t p : mesh_.corners[element]) {
+        const auto elements = mesh_.incidence.of(p);
+        around.insert(around.end(), elements.begin(), elements.end());
+      }
+    }
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    const bool changed = std::any_of(around.begin(), around.end(),
+                                     [&](std::uint32_t e) { return after_[e] != mesh_.corners[e]; });
+    return changed && !are_joined(a, b, around);
+  }
+
+  /// Whether common corners lead from one tetrahedron to another through those in a list.
+  [[nodiscard]] bool are_joined(std::uint32_t from, std::uint32_t to,
+                                std::vector<std::uint32_t> through) const {
+    std::vector<std::uint32_t> reached = {from};
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      if (reached[i] == to) return true;
+      const auto next = std::partition(through.begin(), through.end(), [&](std::uint32_t e) {
+        return !have_common(after_[reached[i]], after_[e]);
+      });
+      reached.insert(reached.end(), next, through.end());
+      through.erase(next, through.end());
+    }
+    return false;
+  }
+
   /// The vertex in place of `v` on the side of a tetrahedron. `own` is the tetrahedron of `v`, if it has one.
   std::uint32_t vertex_on(std::uint32_t owner, std::uint32_t v, std::uint32_t own) {
     if (own == kNoElement) {
@@ -91,8 +123,7 @@ class SplitSkin {
       const std::uint32_t point = index_[corner_after<4>(mesh_, after_, owner, row) - solid_.particles.first];
       return vertex_with(v, {.points = {point, point, point, point}, .weights = {Real(1)}});
     }
-    const bool parted =
-        have_common(mesh_.corners[owner], mesh_.corners[own]) && !have_common(after_[owner], after_[own]);
+    const bool parted = have_parted(owner, own);
     Skin::Anchor anchor = old_anchor(v);
     if (parted) {
       anchor.weights = weights_in(owner, v);

@@ -254,6 +254,62 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(simulation.find("bar_glue[2]") == nullptr);
   }
 
+  TEST_CASE("a blade cuts what it names where it sweeps, and a restoration cuts again alike") {
+    const char* const text = R"({
+      "version": 1, "seconds": 1, "world": {"gravity": [0, 0, 0]},
+      "bodies": [{"name": "knife", "kind": "kinematic", "shape": {"box": {"half_extents": [0.01, 0.3, 0.01]}},
+                  "position": [-0.5, -0.52, 0], "velocity": [3, 0, 0], "collides": false,
+                  "blade": {"edge": [[0, 0, -0.3], [0, 0, 0.3]], "cuts": ["sheet", "block", "rope"]}}],
+      "cloths": [{"name": "sheet", "columns": 11, "rows": 11, "tethers": false, "array": {"grid": [1, 1, 2], "spacing": [1, 1, 0.1]}},
+                 {"name": "other", "columns": 11, "rows": 11, "corner": [0, 0, -0.1]}],
+      "solids": [{"name": "block", "cells": [3, 3, 3], "size": [0.3, 0.3, 0.3], "position": [0.5, -0.5, 0.2],
+                  "young_modulus": 10000}],
+      "ropes": [{"name": "rope", "hook_point": [0.5, 0, 0.25], "direction": [0, -1, 0]}],
+      "expect": [{"quantity": "broken", "of": "sheet[1]", "op": "==", "value": 11},
+                 {"quantity": "broken", "of": "other", "op": "==", "value": 0},
+                 {"quantity": "broken", "of": "rope", "op": "==", "value": 1},
+                 {"quantity": "broken", "of": "block", "op": ">", "value": 15}]
+    })";
+    hooke::Simulation simulation = simulate(text);
+    for (int i = 0; i < 15; ++i) simulation.step();
+    const hooke::SimulationSnapshot middle = simulation.snapshot();
+    simulation.run();
+    CHECK(simulation.passed());
+    const std::uint64_t hash = simulation.world().state_hash();
+    const hooke::SceneObject* sheet = simulation.find("sheet[0]");
+    CHECK(sheet->broken);
+    CHECK(sheet->cut_by == "knife");
+    CHECK(sheet->broke.time == doctest::Approx(1.0 / 6).epsilon(0.1));
+    CHECK(simulation.find("block")->cut_by == "knife");
+    CHECK(simulation.find("rope")->cut_by == "knife");
+    CHECK(!simulation.find("other")->broken);
+    REQUIRE(simulation.restore(middle).has_value());
+    simulation.run();
+    CHECK(simulation.world().state_hash() == hash);
+    hooke::Simulation again = simulate(hooke::write_scene(simulation.scene()));
+    again.run();
+    CHECK(again.world().state_hash() == hash);
+  }
+
+  TEST_CASE("what is no blade is said at its place") {
+    const auto complaint = [](const std::string& rest) {
+      const std::string text =
+          R"({"version": 1, "ropes": [{"name": "rope"}], "bodies": [{"name": "knife", "shape": {"box": {}}, )" +
+          rest + "}]}";
+      const auto scene = hooke::parse_scene(text, "demo.json");
+      REQUIRE(!scene);
+      return hooke::to_line(scene.errors.front());
+    };
+    CHECK(complaint(R"("blade": {"edge": [[0, 0, 0], [1, 0, 0]]})")
+              .ends_with("bodies[0]: 'blade' is for a kinematic body, which nothing stops"));
+    CHECK(complaint(R"("kind": "kinematic", "blade": {"edge": [[1, 0, 0], [1, 0, 0]]})")
+              .ends_with("the two ends of the 'edge' of 'blade' must not be equal"));
+    CHECK(complaint(R"("kind": "kinematic", "blade": {"edge": [[0, 0, 0], [1, 0, 0]], "cuts": ["knife"]})")
+              .ends_with("'knife' is neither a rope nor a cloth nor a solid"));
+    CHECK(complaint(R"("kind": "kinematic", "blade": {"edge": [[0, 0, 0], [1, 0, 0]], "cuts": ["rop"]})")
+              .find("rope") != std::string::npos);
+  }
+
   TEST_CASE("what cannot be fractured is said at its place") {
     const auto complaint = [](const std::string& rest) {
       auto scene =

@@ -89,7 +89,8 @@ constexpr const char* kEverything = R"({
        "density": 700, "material": "plain"},
       {"shape": {"cylinder": {"half_height": 2}}}, {"shape": {"box": {"half_extents": [1, 2, 3]}}},
       {"shape": {"sphere": {"radius": 2}}}, {"shape": {"hull": "inline"}}]}},
-    {"kind": "kinematic", "shape": {"hull": "inline"}, "surface_velocity": [0, 0, 1], "motion": {"velocity": [0, 1, 0]}},
+    {"kind": "kinematic", "shape": {"hull": "inline"}, "surface_velocity": [0, 0, 1], "motion": {"velocity": [0, 1, 0]},
+     "blade": {"edge": [[-0.5, 0, 0], [0.5, 0, 0]], "cuts": ["rope"]}},
     {"name": "glass", "kind": "dynamic", "shape": {"box": {}}, "fracture": {"cells": 5, "seed": 8, "impact": [0.1, 0, 0], "impact_radius": 0.1,
      "least_share": 0.1, "least_face": 0.2, "strength": 5000}},
     {"kind": "dynamic", "shape": {"box": {}}, "fracture": {"seeds": [[0, 0, 0], [0.5, 0, 0]], "strength": "rigid"}},
@@ -145,7 +146,7 @@ constexpr const char* kEverything = R"({
   "solids": [
     {"mesh": "inline", "visual": "fit"},
     {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
-     "damping": 0.0625, "elasticity": "shape_matching", "match_hz": 5, "match_damping_ratio": 0.5, "yield_stress": 500, "thickness": 0.25, "self_contact": true, "category": 2, "mask": 6, "group": -1,
+     "damping": 0.0625, "elasticity": "shape_matching", "match_hz": 5, "match_damping_ratio": 0.5, "yield_stress": 500, "strength": 600, "thickness": 0.25, "self_contact": true, "category": 2, "mask": 6, "group": -1,
      "pins": [{"topmost": 0.5}]},
     {"mesh": "inline", "cell": 0.25, "position": [0, 4, 0], "total_mass": 2}],
   "timeline": [

@@ -59,7 +59,7 @@ ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
 void tear_surface(std::span<const std::array<std::uint32_t, 3>> triangles,
                   std::span<const std::uint32_t> splits, ClothSurface& surface) {
   std::vector<std::uint32_t>& indices = surface.geometry->indices;
-  if (splits.empty() || indices.size() != 3 * triangles.size()) return;
+  if (splits.empty() || indices.size() > 3 * triangles.size()) return;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vertex_of;  // by vertex before and point
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::uint32_t point = triangles[i / 3][i % 3];
@@ -70,6 +70,18 @@ void tear_surface(std::span<const std::array<std::uint32_t, 3>> triangles,
     indices[i] = entry->second;
     if (!is_new) continue;
     surface.geometry->vertices.push_back(render::Vertex(surface.geometry->vertices[before]));
+    surface.point_of.push_back(point);
+    surface.group_of.push_back(static_cast<std::uint32_t>(surface.group_normals.size()));
+    surface.group_normals.emplace_back();
+  }
+  for (std::size_t i = indices.size(); i < 3 * triangles.size(); ++i) {
+    constexpr std::uint32_t kInside = 0xFFFFFFFF;
+    const std::uint32_t point = triangles[i / 3][i % 3];
+    const auto next = static_cast<std::uint32_t>(surface.point_of.size());
+    const auto [entry, is_new] = vertex_of.try_emplace({kInside, point}, next);
+    indices.push_back(entry->second);
+    if (!is_new) continue;
+    surface.geometry->vertices.emplace_back();
     surface.point_of.push_back(point);
     surface.group_of.push_back(static_cast<std::uint32_t>(surface.group_normals.size()));
     surface.group_normals.emplace_back();

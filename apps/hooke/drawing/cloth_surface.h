@@ -26,9 +26,10 @@ struct ClothSurface {
 ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
                                std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// Parts the surface of a cloth where it has torn. `triangles` are those of the cloth, in the order in which
-/// the surface was made from them, and `splits` is World::splits. New vertices have the texture coordinates
-/// of those that they split from.
+/// Parts the surface of a cloth or a solid where it has torn. `triangles` are those of the object, in the
+/// order in which the surface was made from them, and `splits` is World::splits. New vertices have the
+/// texture coordinates of those that they split from. More triangles than the surface has are faces of a
+/// solid that have come open; they are appended.
 void tear_surface(std::span<const std::array<std::uint32_t, 3>> triangles,
                   std::span<const std::uint32_t> splits, ClothSurface& surface);
 

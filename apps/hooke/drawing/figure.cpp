@@ -153,8 +153,15 @@ void prepare_cloth(const Simulation& simulation, const SceneObject& object, Figu
 }
 
 void prepare_solid(const Simulation& simulation, const SceneObject& object, Figure& figure) {
+  const std::vector<std::uint32_t> splits = simulation.world().splits(object.solid);
+  figure.splits = splits.size();
   if (object.model != nullptr) {
     figure.surface = make_model_surface(*object.model);
+    const std::size_t before = figure.surface->geometry->indices.size();
+    tear_surface(simulation.world().triangles(object.solid), splits, *figure.surface);
+    // Faces that have come open have the last material of the model.
+    const auto opened = static_cast<std::uint32_t>(figure.surface->geometry->indices.size() - before);
+    if (!figure.ranges.empty() && figure.ranges.back().count > 0) figure.ranges.back().count += opened;
     return;
   }
   const std::vector<DVec3> places = simulation.world().surface(object.solid);

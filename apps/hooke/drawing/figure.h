@@ -52,7 +52,7 @@ struct FigureLoad {
 struct Figure {
   SceneObject::Kind kind = SceneObject::Kind::kBody;
   float radius = 0;                     ///< Radius of a rope [m].
-  std::size_t splits = 0;               ///< Points that a cloth has got by tearing.
+  std::size_t splits = 0;               ///< Points that a cloth or a solid has got by tearing.
   std::vector<PaintedRange> ranges;     ///< Set for all but bodies; at least one.
   std::vector<FigureSolid> solids;      ///< Set for a body.
   bool half_space = false;              ///< Whether the body is a half-space.

@@ -77,9 +77,10 @@ std::shared_ptr<const render::Image> SceneCapture::find_texture(const std::strin
 
 std::shared_ptr<Figure> SceneCapture::find_figure(const Simulation& simulation, const SceneObject& object) {
   std::shared_ptr<Figure>& figure = figures_[key_of(object)];
-  // A cloth that has torn is a new figure; who draws may still have the one before.
-  const bool is_torn = object.kind == SceneObject::Kind::kCloth && figure != nullptr &&
-                       figure->splits != simulation.world().splits(object.cloth).size();
+  // What has torn or was cut is a new figure; who draws may still have the one before.
+  const World& world = simulation.world();
+  const std::size_t splits = world.splits(object.cloth).size() + world.splits(object.solid).size();
+  const bool is_torn = figure != nullptr && figure->splits != splits;
   if (figure == nullptr || is_torn) {
     figure = std::make_shared<Figure>(make_figure(
         simulation, object,

@@ -86,7 +86,8 @@ MotionRecorder::Taken MotionRecorder::taken(const World& world, const SceneObjec
   const bool is_skin_of_solid = object.kind == Kind::kSolid && detail_ == Detail::kSkins;
   now.points = is_skin_of_solid ? world.surface(object.solid) : copy_points(points);
   // Formats of motion keep the points of the first frame: a tear shows as a triangle that is long.
-  if (object.kind == Kind::kCloth) now.points.resize(points.size() - world.splits(object.cloth).size());
+  const std::size_t splits = world.splits(object.cloth).size() + world.splits(object.solid).size();
+  if (!is_skin_of_solid) now.points.resize(points.size() - splits);
   return now;
 }
 

@@ -342,6 +342,7 @@ void Builder::build(const SceneBody& body, const std::string& path) {
     object.shape = desc.shape;
     object.parts = parts;
     object.model = model;
+    object.blade = body.blade;
     if (!body.visual.empty()) object.visual = data_.models[body.visual].model;
     if (!keep(object, &SceneObject::body, data_.world.add_body(placed(desc, data_.placement)))) return;
   }

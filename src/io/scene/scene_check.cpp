@@ -24,8 +24,14 @@ struct NamedObject {
 };
 
 /// A Subject is what a quantity is measured on.
-/// Hooks and ropes twist, hooks and the world have gaps, and these, ropes and cloths break.
+/// Hooks and ropes twist, hooks and the world have gaps, and these, ropes, cloths and solids break.
 enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kTwists, kGaps, kBreaks };
+
+/// Whether objects of a kind may snap, tear or be cut.
+bool breaks(SceneObject::Kind kind) {
+  return kind == SceneObject::Kind::kRope || kind == SceneObject::Kind::kCloth ||
+         kind == SceneObject::Kind::kSolid;
+}
 
 class Checker {
  public:
@@ -255,6 +261,13 @@ void Checker::check_body(const SceneBody& body, const std::string& path) {
     const bool part_hull = part.desc.shape.kind == ShapeKind::kHull;
     check_mesh_name(part.mesh, part_path + (part_hull ? ".shape.hull" : ".shape.mesh"));
     check_material(part.material, part_path + ".material");
+  }
+  for (std::size_t k = 0; body.blade && k < body.blade->cuts.size(); ++k) {
+    const std::string& name = body.blade->cuts[k];
+    const std::string cut_path = indexed(path + ".blade.cuts", k);
+    const NamedObject* object = find_named(name, cut_path);
+    if (object != nullptr && !breaks(object->kind))
+      fail(cut_path, ErrorCode::kOutOfRange, in_quotes(name) + " is neither a rope nor a cloth nor a solid");
   }
 }
 
@@ -534,8 +547,8 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
   if (subject == Subject::kHook || subject == Subject::kGaps) {
     if (object.kind != Kind::kHook) wrong(" is not a hook");
   } else if (subject == Subject::kBreaks) {
-    if (object.kind != Kind::kHook && object.kind != Kind::kRope && object.kind != Kind::kCloth)
-      wrong(" is neither a hook nor a rope nor a cloth");
+    if (object.kind != Kind::kHook && !breaks(object.kind))
+      wrong(" is neither a hook nor a rope nor a cloth nor a solid");
   } else if (subject == Subject::kBody) {
     if (!body) wrong(" is not a body");
   } else if (!has_points(object.kind) && !(body && subject == Subject::kPoint)) {

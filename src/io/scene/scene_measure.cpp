@@ -87,13 +87,16 @@ double extreme_height(const SimulationData& data, const SceneObject& object, boo
   return extreme;
 }
 
-/// How many segments of a rope have broken, how many points of a cloth have split, or whether a hook broke.
+/// How many segments of a rope have broken or were cut, how many points of a cloth or a solid have split, or
+/// whether a hook broke.
 double count_broken(const World& world, const SceneObject& object) {
   switch (object.kind) {
     case SceneObject::Kind::kRope:
       return static_cast<double>(world.broken_segments(object.rope).size());
     case SceneObject::Kind::kCloth:
       return static_cast<double>(world.splits(object.cloth).size());
+    case SceneObject::Kind::kSolid:
+      return static_cast<double>(world.splits(object.solid).size());
     default:
       return object.broken ? 1 : 0;
   }

@@ -7,6 +7,7 @@
 #include "io/scene/scene_source.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace hooke {
@@ -185,7 +186,7 @@ SceneObject* note_first_break(SimulationData& data, std::vector<SceneObject>::it
   return &*object;
 }
 
-/// Notes the first break of each rope that snapped, and the first tear of each cloth.
+/// Notes the first break of each rope that snapped, and the first tear of each cloth and solid.
 void note_snaps_and_tears(SimulationData& data) {
   const auto find = [&](auto is_it) { return std::find_if(data.objects.begin(), data.objects.end(), is_it); };
   for (const RopeBreakEvent& event : data.world.events().rope_breaks) {
@@ -195,6 +196,79 @@ void note_snaps_and_tears(SimulationData& data) {
   for (const ClothTearEvent& event : data.world.events().tears) {
     const auto cloth = find([&](const SceneObject& one) { return one.cloth == event.cloth; });
     if (SceneObject* torn = note_first_break(data, cloth, {.time = event.time})) torn->tore_at = event.strain;
+  }
+  for (const SolidTearEvent& event : data.world.events().solid_tears) {
+    const auto solid = find([&](const SceneObject& one) { return one.solid == event.solid; });
+    if (SceneObject* torn = note_first_break(data, solid, {.time = event.time})) torn->tore_at = event.stress;
+  }
+}
+
+/// Ends of the edge of a blade in the world [m].
+std::array<DVec3, 2> edge_of(const World& world, const SceneObject& blade) {
+  const Pose pose = world.pose(blade.body);
+  const auto at = [&](const Vec3& end) {
+    return pose.position + vector_cast<double>(rotate(pose.rotation, end));
+  };
+  return {at(blade.blade->edge[0]), at(blade.blade->edge[1])};
+}
+
+/// Ends of the edges of all blades, in the order of objects.
+std::vector<std::array<DVec3, 2>> list_edges(const SimulationData& data) {
+  std::vector<std::array<DVec3, 2>> edges;
+  for (const SceneObject& object : data.objects) {
+    if (object.blade) edges.push_back(edge_of(data.world, object));
+  }
+  return edges;
+}
+
+/// Whether a blade cuts an object: one that it names, or a copy of an array that it names.
+bool is_to_cut(const SceneBlade& blade, const SceneObject& object) {
+  if (blade.cuts.empty()) return true;
+  return std::any_of(blade.cuts.begin(), blade.cuts.end(), [&](const std::string& name) {
+    return object.name == name || object.name.starts_with(name + "[");
+  });
+}
+
+/// What a blade cuts, without where it moves.
+CutDesc targets_of(const SimulationData& data, const SceneObject& blade) {
+  CutDesc desc;
+  for (const SceneObject& object : data.objects) {
+    if (blade.blade->cuts.empty()) break;
+    if (!is_to_cut(*blade.blade, object) || positions_of(data.world, object).empty()) continue;
+    if (object.rope) desc.ropes.push_back(object.rope);
+    if (object.cloth) desc.cloths.push_back(object.cloth);
+    if (object.solid) desc.solids.push_back(object.solid);
+  }
+  return desc;
+}
+
+/// Notes which objects a blade has cut that had neither broken nor been cut before.
+void note_cuts(SimulationData& data, const std::string& blade, const CutResult& cut) {
+  const auto note = [&](auto is_it) {
+    const auto object = std::find_if(data.objects.begin(), data.objects.end(), is_it);
+    if (SceneObject* first = note_first_break(data, object, {.time = data.world.time()}))
+      first->cut_by = blade;
+  };
+  for (const RopeCut& one : cut.ropes)
+    note([&](const SceneObject& object) { return object.rope == one.rope; });
+  for (const ClothCut& one : cut.cloths)
+    note([&](const SceneObject& object) { return object.cloth == one.cloth; });
+  for (const SolidCut& one : cut.solids)
+    note([&](const SceneObject& object) { return object.solid == one.solid; });
+}
+
+/// Lets all blades cut what they have swept since their edges were at `before`.
+void cut_by_blades(const std::vector<std::array<DVec3, 2>>& before, SimulationData& data) {
+  std::size_t i = 0;
+  for (std::size_t row = 0; row < data.objects.size() && i < before.size(); ++row) {
+    if (!data.objects[row].blade) continue;
+    CutDesc desc = targets_of(data, data.objects[row]);
+    desc.from = before[i++];
+    desc.to = edge_of(data.world, data.objects[row]);
+    const bool names_none = desc.ropes.empty() && desc.cloths.empty() && desc.solids.empty();
+    if (names_none && !data.objects[row].blade->cuts.empty()) continue;  // What it names is gone.
+    const Result<CutResult> cut = data.world.cut(desc);
+    if (cut) note_cuts(data, std::string(data.objects[row].name), cut.value());
   }
 }
 
@@ -243,9 +317,11 @@ Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement, c
 StepReport Simulation::step() {
   const base::FloatEnvironment environment;
   apply_due_events(*data_);
+  const std::vector<std::array<DVec3, 2>> edges = list_edges(*data_);
   const StepReport report = data_->world.step(data_->scene.dt);
   note_broken_hooks(*data_);
   note_snaps_and_tears(*data_);
+  if (report.moved && !edges.empty()) cut_by_blades(edges, *data_);
   data_->contacts = report.contacts;
   if (report.moved) evaluate_due(*data_);
   return report;

@@ -73,6 +73,8 @@ const Kind& kind_of<ScenePart>();
 template <>
 const Kind& kind_of<SceneFracture>();
 template <>
+const Kind& kind_of<SceneBlade>();
+template <>
 const Kind& kind_of<ScenePair>();
 template <>
 const Kind& kind_of<SceneHook>();

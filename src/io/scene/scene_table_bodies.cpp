@@ -120,6 +120,8 @@ std::vector<Field> body_rows() {
           "fracture", "", kAny,
           "Makes a dynamic box, hull or mesh of glued cells: the bodies `name[0]`, ... and "
           "the hooks `name_glue[0]`, ..."),
+      field<&SceneBody::blade>(
+          "blade", "", kAny, "Makes a kinematic body cut the ropes, cloths and solids that its edge sweeps."),
       field<&SceneBody::visual>("visual", "", kNotEmpty,
                                 "What is drawn in place of the shape: a name in `meshes`."),
       field<kDesc, &BodyDesc::kind>("kind", "", kAny,
@@ -158,10 +160,20 @@ std::vector<Field> body_rows() {
       field<kDesc, &BodyDesc::can_sleep>("can_sleep", "", kAny, "May rest until something wakes it.")};
 }
 
+/// A blade is moved as told, and has an edge.
+bool check_blade(Reader& reader, const JsonNode& node, const SceneBody& body) {
+  if (!body.blade) return true;
+  if (body.desc.kind != BodyKind::kKinematic)
+    return reader.fail(node, ErrorCode::kOutOfRange, "'blade' is for a kinematic body, which nothing stops");
+  if (length(body.blade->edge[1] - body.blade->edge[0]) > Real(0)) return true;
+  return reader.fail(node, ErrorCode::kOutOfRange, "the two ends of the 'edge' of 'blade' must not be equal");
+}
+
 /// A body that is to break is one that moves, and whose inside is known.
 bool check_body(Reader& reader, const JsonNode& node, const void* object) {
   if (!check_tagged<SceneBody>(reader, node, object)) return false;
   const auto& body = *static_cast<const SceneBody*>(object);
+  if (!check_blade(reader, node, body)) return false;
   if (!body.fracture) return true;
   if (body.desc.kind != BodyKind::kDynamic) {
     return reader.fail(node, ErrorCode::kOutOfRange,
@@ -204,6 +216,21 @@ const Kind& kind_of<SceneFracture>() {
                                                  "A face takes this times its area as a force, and this "
                                                  "times its section modulus as a torque.")},
       .defaults = defaults_of<SceneFracture>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneBlade>() {
+  static const Kind kind = {
+      .name = "blade",
+      .help =
+          "The sharp edge of a kinematic body. In each step it cuts what it has swept: ropes lose segments, "
+          "triangles of cloths and tetrahedra of solids part.",
+      .fields = {required(field<&SceneBlade::edge>("edge", "m", kAny, "Its two ends in the body's frame.")),
+                 field<&SceneBlade::cuts>(
+                     "cuts", "", kNotEmpty,
+                     "Names of the ropes, cloths and solids that it cuts; all by default.")},
+      .defaults = defaults_of<SceneBlade>};
   return kind;
 }
 
@@ -259,7 +286,8 @@ std::span<const Kind* const> body_kinds() {
   static const Kind* const kinds[] = {
       &kind_of<SceneBody>(), &shape_kind(),         &BodyShape::half_space(), &BodyShape::sphere(),
       &BodyShape::box(),     &BodyShape::capsule(), &BodyShape::cylinder(),   &BodyShape::cone(),
-      &kind_of<ScenePart>(), &part_shape_kind(),    &kind_of<ScenePair>(),    &kind_of<SceneFracture>()};
+      &kind_of<ScenePart>(), &part_shape_kind(),    &kind_of<ScenePair>(),    &kind_of<SceneFracture>(),
+      &kind_of<SceneBlade>()};
   return kinds;
 }
 

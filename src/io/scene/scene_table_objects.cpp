@@ -345,6 +345,9 @@ std::vector<Field> solid_rows() {
       field<kDesc, &SolidDesc::damping>("damping", "s", between(0, 0.1), "Viscosity over stiffness."),
       field<kDesc, &SolidDesc::yield_stress>("yield_stress", "Pa", kPositiveOrRigid,
                                              "Above this von Mises' stress it flows and keeps its new form."),
+      field<kDesc, &SolidDesc::strength>(
+          "strength", "Pa", kPositive,
+          "Largest principal stress that it takes; beyond it tears. Any by default. It needs tetrahedra."),
       field<kDesc, &SolidDesc::thickness>("thickness", "m", kPositive,
                                           "Points keep half of it from what they touch."),
       field<kDesc, &SolidDesc::self_contact>("self_contact", "", kAny, "Whether it touches itself."),
