@@ -50,6 +50,27 @@ std::vector<CrackEdge> list_cracks(const ElementMesh<3>& mesh, Triangles after,
   return cracks;
 }
 
+/// Edges that belong to one triangle only after the splits: all cracks, and the rim, which no straight way
+/// within a grid crosses.
+std::vector<CrackEdge> list_open_edges(const ElementMesh<3>& mesh, Triangles after) {
+  std::vector<CrackEdge> edges;
+  for (std::uint32_t e = 0; e < after.size(); ++e) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = after[e][k];
+      const std::uint32_t b = after[e][(k + 1) % 3];
+      const auto has_both = [&](std::uint32_t f) {
+        const auto& c = after[f];
+        return f != e && std::find(c.begin(), c.end(), a) != c.end() &&
+               std::find(c.begin(), c.end(), b) != c.end();
+      };
+      const auto around = mesh.incidence.of(mesh.corners[e][k]);
+      if (std::none_of(around.begin(), around.end(), has_both))
+        edges.push_back({mesh.corners[e][k], mesh.corners[e][(k + 1) % 3]});
+    }
+  }
+  return edges;
+}
+
 /// The form at rest of a cloth on a grid, as a plane.
 class RestPlane {
  public:
@@ -127,22 +148,38 @@ class GridTethers {
     }
   }
 
-  /// Finds what becomes of the tether from `a` to the pin `b` in a row.
-  void change(std::uint32_t row, std::uint32_t a, std::uint32_t b, TetherChanges& changes) const {
+  /// Finds what becomes of the tether from `a` to the pin `b` in a row. Where an end splits, cracks from
+  /// before may come to lie between it and the other.
+  void change(std::uint32_t row, std::uint32_t a, std::uint32_t b, TetherChanges& changes) {
     if (lines_.empty() || are_apart(plane_.at(a), plane_.at(b), low_, high_)) return;
-    if (is_cut(a, a, b)) changes.gone.push_back(row);
+    if (is_cut(a, a, b, splits(a) || splits(b) ? open_lines() : lines_)) changes.gone.push_back(row);
     for (std::uint32_t i = 0; i < splits_.size(); ++i) {
-      if (splits_[i].particle != a || is_cut(a, added_ + i, b)) continue;
+      if (splits_[i].particle != a || is_cut(a, added_ + i, b, open_lines())) continue;
       changes.copied.push_back(row);
       changes.ends.push_back(added_ + i);
     }
   }
 
  private:
-  [[nodiscard]] bool is_cut(std::uint32_t a, std::uint32_t copy, std::uint32_t b) const {
+  using Line = std::array<Point2, 2>;
+
+  [[nodiscard]] bool splits(std::uint32_t particle) const {
+    return std::any_of(splits_.begin(), splits_.end(),
+                       [=](const PointSplit& s) { return s.particle == particle; });
+  }
+
+  const std::vector<Line>& open_lines() {
+    if (!open_lines_.empty()) return open_lines_;
+    for (const CrackEdge& edge : list_open_edges(mesh_, after_))
+      open_lines_.push_back({plane_.at(edge[0]), plane_.at(edge[1])});
+    return open_lines_;
+  }
+
+  [[nodiscard]] bool is_cut(std::uint32_t a, std::uint32_t copy, std::uint32_t b,
+                            const std::vector<Line>& lines) const {
     const Point2 from = plane_.inside(mesh_, after_, a, copy);
     const Point2 to = plane_.inside(mesh_, after_, b, b);
-    return std::any_of(lines_.begin(), lines_.end(),
+    return std::any_of(lines.begin(), lines.end(),
                        [&](const auto& line) { return cross(from, to, line[0], line[1]); });
   }
 
@@ -151,7 +188,8 @@ class GridTethers {
   std::span<const PointSplit> splits_;
   RestPlane plane_;
   std::uint32_t added_;
-  std::vector<std::array<Point2, 2>> lines_;
+  std::vector<Line> lines_;       ///< Edges that part now.
+  std::vector<Line> open_lines_;  ///< All open ones; made when they are needed.
   Point2 low_ = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Point2 high_ = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
@@ -185,7 +223,7 @@ TetherChanges list_changes(const ElementMesh<3>& mesh, Triangles after, std::spa
   if (std::find(begin, begin + cloth.springs.count, SpringClass::kTether) == begin + cloth.springs.count)
     return changes;
   if (cloth.columns > 0) {
-    const GridTethers tethers(mesh, after, splits, cloth, t);
+    GridTethers tethers(mesh, after, splits, cloth, t);
     for_each_tether([&](auto row, auto a, auto b) { tethers.change(row, a, b, changes); });
   } else {
     const std::vector<CrackEdge> cracks = list_cracks(mesh, after, splits);

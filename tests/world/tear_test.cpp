@@ -140,6 +140,28 @@ TEST_SUITE("world/tear") {
     CHECK(d(world.positions(rope)[0].x) == doctest::Approx(5));
   }
 
+  TEST_CASE("cloth with tethers, or with bends by springs, tears, and nothing holds the pieces together") {
+    for (const ClothDesc::Bend bend : {ClothDesc::Bend::kSpring, ClothDesc::Bend::kAngle}) {
+      World world = make_world(space());
+      ClothDesc desc = pulled(Real(0.3));
+      desc.bend = bend;
+      desc.bend_stiffness = bend == ClothDesc::Bend::kSpring ? Real(2) : Real(1e-4);
+      desc.tethers = true;  // To both sides, which go apart.
+      const ClothId cloth = take(world.add_cloth(desc));
+      run(world, 180);
+      REQUIRE(!world.splits(cloth).empty());
+      CHECK(count_pieces(world, cloth) >= 2);
+      // The held side is at 0, the other at 4, and each has its pieces with it.
+      std::size_t between = 0;
+      for (std::size_t i = 0; i < world.positions(cloth).size(); ++i) {
+        const double x = world.positions(cloth)[i].x;
+        between += x > 1.2 && x < 2.8 ? 1 : 0;
+      }
+      CHECK(between < 10);
+      CHECK(world.measure().largest_stretch < 0.6);
+    }
+  }
+
   TEST_CASE("a closed cloth that is filled too much bursts, and its gas is gone") {
     World world = make_world(space());
     MeshDesc mesh;
@@ -151,8 +173,18 @@ TEST_SUITE("world/tear") {
                                                .tear_strain = Real(0.005),
                                                .pressure = Real(3000)}));
     CHECK(d(world.pressure(ball)) == doctest::Approx(3000).epsilon(0.01));
-    run(world, 30);
-    CHECK(!world.splits(ball).empty());
+    std::size_t tears = 0;
+    std::size_t bursts = 0;
+    for (int i = 0; i < 30; ++i) {
+      run(world, 1);
+      for (const ClothTearEvent& tear : world.events().tears) {
+        CHECK(tear.burst == (tears == 0));
+        ++tears;
+        bursts += tear.burst ? 1 : 0;
+      }
+    }
+    CHECK(tears == world.splits(ball).size());
+    CHECK(bursts == 1);
     CHECK(world.pressure(ball) == Real(0));
   }
 
