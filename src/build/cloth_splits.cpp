@@ -248,18 +248,17 @@ void own_edges(const Deformable& cloth, const ElementMesh<3>& mesh,
                std::span<const std::array<std::uint32_t, 3>> after, std::span<const PointSplit> splits,
                Tables& t) {
   std::uint8_t* const own = t.triangles.own_edges.data() + cloth.triangles.first;
-  for (const PointSplit& split : splits) {
-    for (const std::uint32_t element : mesh.incidence.of(split.particle)) {
-      for (unsigned k = 0; k < 3; ++k) {
-        const std::uint32_t a = after[element][k];
-        const std::uint32_t b = after[element][(k + 1) % 3];
-        const auto near = mesh.incidence.of(mesh.corners[element][k]);
-        const bool owned = std::any_of(near.begin(), near.end(), [&](std::uint32_t e) {
-          return (own[e] & edge_bit(after[e], a, b)) != 0;
-        });
-        if (!owned) own[element] |= static_cast<std::uint8_t>(1U << k);
-      }
+  const auto own_edges_of = [&](std::uint32_t element) {
+    for (unsigned k = 0; k < 3; ++k) {
+      const auto near = mesh.incidence.of(mesh.corners[element][k]);
+      const bool owned = std::any_of(near.begin(), near.end(), [&](std::uint32_t e) {
+        return (own[e] & edge_bit(after[e], after[element][k], after[element][(k + 1) % 3])) != 0;
+      });
+      if (!owned) own[element] |= static_cast<std::uint8_t>(1U << k);
     }
+  };
+  for (const PointSplit& split : splits) {
+    for (const std::uint32_t element : mesh.incidence.of(split.particle)) own_edges_of(element);
   }
 }
 

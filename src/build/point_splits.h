@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -170,36 +171,52 @@ std::uint32_t corner_after(const ElementMesh<N>& mesh, std::span<const std::arra
 /// particles behind the object rise wherever they are stored.
 void append_split_particles(std::uint32_t object, std::span<const PointSplit> splits, state::Tables& tables);
 
-/// Gives hooks between several particles of an object the particles of the first element that has them all,
-/// of those elements that keep the most. Hooks at one particle stay with it.
+/// Of the elements that had all of some particles, finds the first that has kept most of its own; nothing if
+/// there is none.
+template <std::size_t N>
+std::optional<std::uint32_t> find_least_changed(const ElementMesh<N>& mesh,
+                                                std::span<const std::array<std::uint32_t, N>> after,
+                                                std::span<const std::uint32_t> particles) {
+  std::optional<std::uint32_t> best;
+  std::size_t least = N + 1;
+  for (const std::uint32_t e : mesh.incidence.of(particles.front())) {
+    if (!std::all_of(particles.begin(), particles.end(), [&](std::uint32_t p) { return mesh.has(e, p); }))
+      continue;
+    std::size_t changed = 0;
+    for (std::size_t k = 0; k < N; ++k) changed += mesh.corners[e][k] != after[e][k] ? 1 : 0;
+    if (changed >= least) continue;
+    least = changed;
+    best = e;
+  }
+  return best;
+}
+
+/// Gives the place of a hook between several particles those of an element that had them all. A place at one
+/// particle stays with it.
+template <std::size_t N>
+void part_place(const ElementMesh<N>& mesh, std::span<const std::array<std::uint32_t, N>> after,
+                state::HookPlace& place) {
+  if (place.particle_count < 2) return;
+  const std::span particles = std::span(place.particle).first(place.particle_count);
+  const std::optional<std::uint32_t> element = find_least_changed<N>(mesh, after, particles);
+  if (!element) return;
+  for (std::uint32_t& p : particles) p = corner_after(mesh, after, *element, p);
+}
+
+/// Lets hooks at an object follow its elements.
 template <std::size_t N>
 void part_hooks(std::uint32_t object, const ElementMesh<N>& mesh,
                 std::span<const std::array<std::uint32_t, N>> after, state::Tables& t) {
-  const auto changed = [&](std::uint32_t element) {
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < N; ++k) count += mesh.corners[element][k] != after[element][k] ? 1 : 0;
-    return count;
-  };
   for (state::Hook& hook : t.hooks) {
     for (state::HookPlace* end : {&hook.a, &hook.b}) {
-      if (end->particle_count < 2 || end->object != object) continue;
-      const std::span particles = std::span(end->particle).first(end->particle_count);
-      const auto elements = mesh.incidence.of(particles.front());
-      auto best = elements.end();
-      for (auto e = elements.begin(); e != elements.end(); ++e) {
-        const bool all =
-            std::all_of(particles.begin(), particles.end(), [&](std::uint32_t p) { return mesh.has(*e, p); });
-        if (all && (best == elements.end() || changed(*e) < changed(*best))) best = e;
-      }
-      if (best == elements.end()) continue;
-      for (std::uint32_t& p : particles) p = corner_after(mesh, after, *best, p);
+      if (end->object == object) part_place(mesh, after, *end);
     }
   }
   ++t.hook_revision;
 }
 
-/// Gives named places between several points of an object the points of the element that has them, in the
-/// maker's order; `index` is that of each row, added ones too.
+/// Lets named places between several points of an object follow its elements likewise, in the maker's order;
+/// `index` is that of each row, added ones too.
 template <std::size_t N>
 void part_places(const ElementMesh<N>& mesh, std::span<const std::array<std::uint32_t, N>> after,
                  std::span<const std::uint32_t> index, const state::Tables& t, state::Deformable& object) {
@@ -211,12 +228,9 @@ void part_places(const ElementMesh<N>& mesh, std::span<const std::array<std::uin
     for (std::size_t k = 0; k < 4 && place.weights[k] != Real(0); ++k)
       rows.push_back(first + t.particles.row_of[first + place.points[k]]);
     if (rows.size() < 2) continue;
-    for (const std::uint32_t e : mesh.incidence.of(rows.front())) {
-      if (!std::all_of(rows.begin(), rows.end(), [&](std::uint32_t p) { return mesh.has(e, p); })) continue;
-      for (std::size_t k = 0; k < rows.size(); ++k)
-        place.points[k] = index[corner_after(mesh, after, e, rows[k]) - first];
-      break;
-    }
+    const std::optional<std::uint32_t> e = find_least_changed<N>(mesh, after, rows);
+    for (std::size_t k = 0; e && k < rows.size(); ++k)
+      place.points[k] = index[corner_after(mesh, after, *e, rows[k]) - first];
   }
   object.connection_points = std::move(places);
 }
