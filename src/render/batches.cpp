@@ -12,6 +12,10 @@ namespace hooke::render {
 
 namespace {
 
+constexpr float kFloorFlatness = 20;    ///< Floors are wider than this many times their thickness,
+constexpr float kFloorWidth = 3;        ///< and than this many times all that is not flat.
+constexpr float kStrandRelief = 0.35F;  ///< Height of a rope's strands, in its radii.
+
 /// An Item is a copy of a mesh that will go into a batch.
 struct Item {
   Batch batch;
@@ -23,8 +27,8 @@ struct Item {
 
 auto batch_key(const Item& item) {
   const Batch& b = item.batch;
-  return std::tuple(b.alpha, item.geometry_order, item.texture_order, b.first_index, b.index_count,
-                    b.two_sided, b.mirrored, b.casts_shadow);
+  return std::tuple(b.alpha, b.shading, b.density, item.geometry_order, item.texture_order, b.first_index,
+                    b.index_count, b.two_sided, b.mirrored, b.casts_shadow);
 }
 
 bool drawn_before(const Item& a, const Item& b) {
@@ -43,6 +47,38 @@ std::array<float, 4> linear_of(Color color, float opacity) {
   return {c[0], c[1], c[2], std::clamp(opacity, 0.0F, 1.0F)};
 }
 
+/// Returns the box for the shadow map. A floor casts shadows too, but would take the whole map if it is much
+/// wider than all that stands on it; its box is left out then, and its shadow ends where the map does.
+Bounds box_of_casters(const std::vector<Bounds>& casters) {
+  const auto is_flat = [](const Bounds& box) {
+    const Vec3 size = box.high - box.low;
+    return std::min(size.x, size.z) > kFloorFlatness * size.y;
+  };
+  Bounds upright;
+  for (const Bounds& box : casters)
+    if (!is_flat(box)) extend(upright, box);
+  const float widest = is_empty(upright) ? 0 : kFloorWidth * length(upright.high - upright.low);
+  Bounds result = upright;
+  for (const Bounds& box : casters)
+    if (is_flat(box) && (widest == 0 || length(box.high - box.low) <= widest)) extend(result, box);
+  return result;
+}
+
+Instance make_instance(const Mat4& transform, const std::array<float, 4>& color, const Surface& surface) {
+  const auto share = [](float x) { return std::clamp(x, 0.0F, 1.0F); };
+  return {rows_of(transform),
+          color,
+          {share(surface.metalness), share(surface.roughness), share(surface.sheen),
+           std::max(surface.threads, 0.0F)},
+          {share(surface.transmission), 0, 0, 0}};
+}
+
+/// Glass takes little of the light, jelly some.
+float shadow_density(const DrawMesh& mesh) {
+  return std::clamp(mesh.opacity, 0.0F, 1.0F) *
+         (1 - 0.65F * std::clamp(mesh.surface.transmission, 0.0F, 1.0F));
+}
+
 /// Collects items; it keeps each geometry's box and order of appearance.
 class Collector {
  public:
@@ -59,11 +95,12 @@ class Collector {
     const Bounds box = transformed(place->second.box, transform);
     item.eye_distance = is_empty(box) ? 0 : length(center_of(box) - eye_);
     result_.objects.push_back(box);
-    if (item.batch.casts_shadow) extend(result_.casters, box);
+    if (item.batch.casts_shadow && !is_empty(box)) casters_.push_back(box);
     items_.push_back(std::move(item));
   }
 
   Batches finish() {
+    result_.casters = box_of_casters(casters_);
     std::stable_sort(items_.begin(), items_.end(), drawn_before);
     const Item* previous = nullptr;
     for (const Item& item : items_) {
@@ -90,6 +127,7 @@ class Collector {
   Vec3 eye_;
   Batches result_;
   std::vector<Item> items_;
+  std::vector<Bounds> casters_;
   std::unordered_map<const MeshGeometry*, Known> boxes_;
   std::unordered_map<const Image*, std::size_t> textures_;
 };
@@ -112,37 +150,45 @@ Result<Item> make_item(const DrawMesh& mesh, std::size_t index) {
     return Error{ErrorCode::kOutOfRange, where,
                  std::to_string(batch.index_count) + " indices are not whole triangles"};
   }
-  const bool see_through = mesh.opacity < 1 || mesh.alpha == AlphaMode::kBlend;
+  const bool see_through =
+      mesh.opacity < 1 || mesh.surface.transmission > 0 || mesh.alpha == AlphaMode::kBlend;
   batch.alpha = see_through ? AlphaMode::kBlend : mesh.alpha;
   batch.two_sided = mesh.two_sided;
   batch.mirrored = determinant(linear_part(mesh.transform)) < 0;
-  batch.casts_shadow = mesh.casts_shadow && mesh.opacity >= 0.5F;
+  batch.shading = mesh.surface.shading;
+  batch.density = shadow_density(mesh);
+  batch.casts_shadow = mesh.casts_shadow && batch.density > 0.02F;
   batch.is_in_order = mesh.is_in_order && batch.alpha == AlphaMode::kOpaque;
   batch.mesh = index;
-  item.instance = {rows_of(mesh.transform),
-                   linear_of(mesh.color, mesh.opacity),
-                   {std::max(mesh.shininess, 1.0F), std::max(mesh.specular, 0.0F), 0, 0}};
+  item.instance = make_instance(mesh.transform, linear_of(mesh.color, mesh.opacity), mesh.surface);
   return item;
 }
 
-/// Adds all tubes to one mesh, each as a range of its own.
-void collect_ropes(const std::vector<DrawRope>& ropes, SharedMeshes& shared, Collector& collector) {
-  MeshGeometry& mesh = *shared.ropes;
+/// Adds all tubes, or all tufts of hair, to one mesh, each as a range of its own.
+void collect_ropes(const DrawList& list, bool hairs, MeshGeometry& mesh,
+                   const std::shared_ptr<MeshGeometry>& owner, Collector& collector) {
   mesh.vertices.clear();
   mesh.indices.clear();
   ++mesh.vertex_revision;
   ++mesh.topology_revision;
   std::vector<Item> items;
-  for (const DrawRope& rope : ropes) {
+  for (const DrawRope& rope : list.ropes) {
+    if ((rope.surface.shading == Shading::kHair) != hairs) continue;
     Item item;
     item.batch.first_index = mesh.indices.size();
-    add_tube(rope.points, rope.radius, mesh);
+    if (hairs) {
+      add_tuft(rope.points, rope.radius, list.camera.eye, mesh);
+    } else {
+      add_tube(rope.points, rope.radius, mesh);
+    }
     item.batch.index_count = mesh.indices.size() - item.batch.first_index;
     if (item.batch.index_count == 0) continue;
-    item.batch.geometry = shared.ropes;
-    item.instance = {rows_of(Mat4{}),
-                     linear_of(rope.color, 1),
-                     {std::max(rope.shininess, 1.0F), std::max(rope.specular, 0.0F), 0, 0}};
+    item.batch.geometry = owner;
+    item.batch.shading = rope.surface.shading;
+    item.batch.two_sided = hairs;
+    Surface surface = rope.surface;
+    if (surface.shading == Shading::kRope) surface.threads = kStrandRelief * rope.radius;
+    item.instance = make_instance(Mat4{}, linear_of(rope.color, 1), surface);
     items.push_back(std::move(item));
   }
   // Only now is the mesh complete and its box known.
@@ -164,7 +210,8 @@ void collect_spheres(const DrawList& list, int height_px, const SharedMeshes& sh
     item.batch.index_count = item.batch.geometry->indices.size();
     const float r = sphere.radius;
     const Mat4 transform = affine(Mat3{{r, 0, 0}, {0, r, 0}, {0, 0, r}}, sphere.center);
-    item.instance = {rows_of(transform), linear_of(sphere.color, 1), {40, 0.15F, 0, 0}};
+    item.batch.shading = sphere.surface.shading;
+    item.instance = make_instance(transform, linear_of(sphere.color, 1), sphere.surface);
     collector.add(std::move(item), transform);
   }
 }
@@ -177,6 +224,7 @@ SharedMeshes make_shared_meshes() {
     shared.spheres[i] = std::make_shared<const MeshGeometry>(make_sphere(static_cast<int>(i) + 2));
   }
   shared.ropes = std::make_shared<MeshGeometry>();
+  shared.hairs = std::make_shared<MeshGeometry>();
   return shared;
 }
 
@@ -189,7 +237,8 @@ Result<Batches> make_batches(const DrawList& list, int height_px, SharedMeshes& 
     if (!item) return item.error();
     collector.add(std::move(item).value(), mesh.transform);
   }
-  collect_ropes(list.ropes, shared, collector);
+  collect_ropes(list, false, *shared.ropes, shared.ropes, collector);
+  collect_ropes(list, true, *shared.hairs, shared.hairs, collector);
   collect_spheres(list, height_px, shared, collector);
   return collector.finish();
 }

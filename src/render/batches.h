@@ -16,9 +16,10 @@ namespace hooke::render {
 
 /// An Instance is what the vertex shader knows of one copy of a mesh.
 struct Instance {
-  std::array<float, 12> rows = {};  ///< Rows of the affine matrix.
-  std::array<float, 4> color = {};  ///< Linear color; the last is the opacity.
-  std::array<float, 4> gloss = {};  ///< Exponent, strength, two unused.
+  std::array<float, 12> rows = {};    ///< Rows of the affine matrix.
+  std::array<float, 4> color = {};    ///< Linear color; the last is the opacity.
+  std::array<float, 4> surface = {};  ///< Metalness, roughness, sheen, threads.
+  std::array<float, 4> clear = {};    ///< Transmission, three unused.
 };
 
 constexpr std::size_t kNoMesh = static_cast<std::size_t>(-1);
@@ -32,6 +33,8 @@ struct Batch {
   std::size_t first_instance = 0;
   std::size_t instance_count = 0;
   AlphaMode alpha = AlphaMode::kOpaque;
+  Shading shading = Shading::kSolid;
+  float density = 1;  ///< Share of the sun's light that the shadow takes.
   bool two_sided = false;
   bool mirrored = false;
   bool casts_shadow = true;
@@ -50,7 +53,8 @@ struct Batches {
 /// These are meshes that every frame needs but no list brings; the renderer keeps them.
 struct SharedMeshes {
   std::array<std::shared_ptr<const MeshGeometry>, 3> spheres;  ///< From coarse to fine.
-  std::shared_ptr<MeshGeometry> ropes;                         ///< Filled by make_batches.
+  std::shared_ptr<MeshGeometry> ropes;                         ///< Filled by make_batches, as the next.
+  std::shared_ptr<MeshGeometry> hairs;
 };
 
 SharedMeshes make_shared_meshes();

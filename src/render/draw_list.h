@@ -35,22 +35,26 @@ struct Camera {
 
 struct Sun {
   Vec3 direction = {0.45F, 0.8F, 0.35F};  ///< Direction from the scene to the sun, of any length but zero.
-  Color color = {1.0F, 0.97F, 0.91F};
+  Color color = {1.0F, 0.95F, 0.86F};
   float intensity = 1;  ///< 0 is night.
+  /// Half the angle under which the sun is seen. The true one is 0.27; a wider one gives softer shadows.
+  float half_angle_deg = 1.2F;
 };
 
-/// The sky gives the picture's background, the color of distant fog and the ambient light.
+/// The sky gives the picture's background, the light from all sides, what shiny things mirror, and the color
+/// of what is far away.
 struct Sky {
-  Color zenith = {0.42F, 0.60F, 0.82F};
-  Color horizon = {0.85F, 0.90F, 0.94F};
+  Color zenith = {0.30F, 0.52F, 0.80F};
+  Color horizon = {0.78F, 0.87F, 0.95F};
   float ambient = 0.6F;  ///< Light of the sky, relative to its own brightness.
+  float clouds = 0.5F;   ///< Share of the sky that clouds cover, 0 to 1. They give no shadow.
 };
 
 /// The ground is an endless plane with a square grid; it is visible from above only.
 struct Ground {
   float height = 0;
   Color color = {0.60F, 0.61F, 0.60F};
-  Color line_color = {0.36F, 0.38F, 0.40F};
+  Color line_color = {0.52F, 0.53F, 0.53F};
   float grid_spacing = 1;  ///< Spacing of lines [m]; every tenth is stronger. 0 or less draws no grid.
   float grid_x = 0;  ///< x and z of a crossing of grid lines, so that the grid stays when the origin moves.
   float grid_z = 0;
@@ -82,6 +86,27 @@ enum class AlphaMode {
   kBlend,
 };
 
+/// How light meets a surface.
+enum class Shading {
+  kSolid,  ///< A smooth surface, or one that is evenly rough.
+  /// A sheet of threads: light falls through it, and its fibers shine at the rim.
+  kCloth,
+  kRope,  ///< A laid rope: three strands wind around its axis.
+  kHair,  ///< A tuft of fine hairs, each of which mirrors the light as a cylinder.
+};
+
+/// A Surface is what a material looks like, but for its color.
+struct Surface {
+  Shading shading = Shading::kSolid;
+  float metalness = 0;     ///< 0 is an insulator, 1 a metal, whose color is that of what it mirrors.
+  float roughness = 0.6F;  ///< 0 is a mirror, 1 mirrors the same to all sides.
+  float sheen = 0;         ///< Light that the fibers of a cloth throw at the rim, 0 to 1.
+  /// Share of the light that goes through, colored by the surface, 0 to 1. Above 0 implies
+  /// AlphaMode::kBlend.
+  float transmission = 0;
+  float threads = 0;  ///< Threads of a cloth along one unit of its texture coordinates; 0 draws none.
+};
+
 struct DrawMesh {
   std::shared_ptr<const MeshGeometry> geometry;
   std::size_t first_index = 0;           ///< A part of the geometry, for meshes of several materials.
@@ -89,33 +114,33 @@ struct DrawMesh {
   Mat4 transform;                        ///< Affine; scale may be uneven or mirrored.
   std::shared_ptr<const Image> texture;  ///< Multiplies the color; null stands for white.
   Color color;
-  float opacity = 1;     ///< Below 1 implies AlphaMode::kBlend.
-  float shininess = 40;  ///< Blinn-Phong exponent.
-  float specular = 0.15F;
+  float opacity = 1;  ///< Below 1 implies AlphaMode::kBlend.
+  Surface surface;
   AlphaMode alpha = AlphaMode::kOpaque;
   bool two_sided =
       /// Whether back faces are drawn, with the normal turned to their side. Otherwise they are culled.
       false;
-  /// See-through parts below opacity one half cast no shadow in any case.
+  /// The shadow of what is see-through is as pale as it lets light through.
   bool casts_shadow = true;
   /// Whether the mesh is drawn before all others, in the order of the list and of its triangles, and covers
   /// what is there (see painter.h). This is for opaque meshes only.
   bool is_in_order = false;
 };
 
-/// This is a smooth round tube through the points (Catmull-Rom), with round ends.
+/// This is a smooth round tube through the points (Catmull-Rom), with round ends; or, if it is shaded as
+/// hair, a tuft of strands of about that radius.
 struct DrawRope {
   std::vector<Vec3> points;  ///< Fewer than two different points draw nothing.
   float radius = 0.02F;
   Color color = {0.72F, 0.56F, 0.36F};
-  float shininess = 20;
-  float specular = 0.1F;
+  Surface surface = {Shading::kRope, 0, 0.75F, 0, 0, 0};
 };
 
 struct DrawSphere {
   Vec3 center;
   float radius = 0.05F;
   Color color;
+  Surface surface = {};
 };
 
 struct DrawLine {

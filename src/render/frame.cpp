@@ -1,26 +1,25 @@
 #include "render/frame.h"
 
-#include "render/batches.h"
+#include "render/sky_light.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace hooke::render {
 
 namespace {
 
-// A white surface facing the sun is a little below the brightest value, one in the shadow at about a quarter
-// of that.
-constexpr float kSunStrength = 1.8F;
-constexpr float kAmbientStrength = 1.0F;
-// The fog hides the ground's end but nothing of the scene: it is 0.7 % at the farthest object.
-constexpr float kFogReach = 12;
+constexpr float kHazeReach = 8;      ///< Distance of the haze, in distances of the farthest object.
+constexpr float kShadowTaps = 16;    ///< Samples of the shadow map where there is a half shadow.
+constexpr float kWidestShadow = 24;  ///< Radius of the widest half shadow, in texels.
 
 std::array<float, 4> vec4_of(Vec3 v, float w) {
   return {v.x, v.y, v.z, w};
 }
 
-std::array<float, 4> scaled(const std::array<float, 3>& color, float factor) {
-  return {factor * color[0], factor * color[1], factor * color[2], 1};
+std::array<float, 4> vec4_of(const LinearColor& color, float w) {
+  return {color[0], color[1], color[2], w};
 }
 
 }  // namespace
@@ -34,24 +33,18 @@ FrameUniforms make_frame(const DrawList& list, const View& view, const ShadowVie
   frame.ray_right = vec4_of(view.right, 0);
   frame.ray_up = vec4_of(view.up, 0);
   frame.ray_forward = vec4_of(view.forward, 0);
-  Vec3 sun = normalize(list.sun.direction);
-  if (sun == Vec3{}) sun = {0, 1, 0};
-  frame.sun_direction = vec4_of(sun, 0);
-  frame.sun_color = scaled(linear_of(list.sun.color), kSunStrength * std::max(list.sun.intensity, 0.0F));
-  const auto zenith = linear_of(list.sky.zenith);
-  const auto horizon = linear_of(list.sky.horizon);
-  frame.zenith = scaled(zenith, 1);
-  frame.horizon = scaled(horizon, 1);
-  const float ambient = kAmbientStrength * std::max(list.sky.ambient, 0.0F);
-  const auto below = list.ground ? linear_of(list.ground->color) : horizon;
-  for (std::size_t i = 0; i < 3; ++i) {
-    frame.sky_light[i] = ambient * 0.5F * (zenith[i] + horizon[i]);
-    // The ground reflects a part of the light that falls on it.
-    frame.ground_light[i] =
-        below[i] * 0.6F * (frame.sky_light[i] + 0.15F * frame.sun_color[i] * std::max(sun.y, 0.0F));
-  }
+  const SkyLight sky = sky_light_of(list);
+  frame.sun_direction = vec4_of(sky.sun_direction, 0);
+  frame.sun_color = vec4_of(sky.sun, 1);
+  frame.zenith = vec4_of(sky.zenith, 1);
+  frame.horizon = vec4_of(sky.horizon, std::clamp(list.sky.clouds, 0.0F, 1.0F));
+  frame.below = vec4_of(sky.below, 1);
+  const auto irradiance = irradiance_of(sky);
+  for (std::size_t i = 0; i < irradiance.size(); ++i) frame.irradiance[i] = vec4_of(irradiance[i], 0);
   frame.shadow_info = {shadow.texel_size, static_cast<float>(map_size), map_size > 0 ? 1.0F : 0.0F,
-                       kFogReach * view.reach};
+                       kHazeReach * view.reach};
+  const float half_angle = std::clamp(list.sun.half_angle_deg, 0.0F, 20.0F) * std::numbers::pi_v<float> / 180;
+  frame.shadow_light = {shadow.depth, std::tan(half_angle), kShadowTaps, kWidestShadow * shadow.texel_size};
   return frame;
 }
 

@@ -1,10 +1,7 @@
 #include "render/renderer.h"
 
-#include "render/batches.h"
 #include "render/frame.h"
-#include "render/gl/programs.h"
-#include "render/gpu_cache.h"
-#include "render/targets.h"
+#include "render/renderer_data.h"
 #include "render/text.h"
 
 #include <algorithm>
@@ -17,18 +14,6 @@ namespace hooke::render {
 
 namespace {
 
-/// This is a buffer that is filled anew every frame, and the vertex array that reads it.
-struct Stream {
-  GlName vertex_array;
-  GlName buffer;
-};
-
-struct GroundMesh {
-  GlName vertex_array;
-  GlName buffer;
-  GLsizei vertex_count = 0;
-};
-
 /// This is what the line shader reads of one line.
 struct LineInstance {
   std::array<float, 4> from = {};
@@ -36,44 +21,10 @@ struct LineInstance {
   std::array<float, 4> color = {};
 };
 
-/// Radius of the outermost ring of the ground mesh, whose innermost ring has radius one half.
-constexpr float kGroundRadius = 16384;
-
 constexpr int kGroundSides = 32;
 
-/// This is what both passes draw.
-struct Prepared {
-  Batches batches;
-  std::vector<const GpuMesh*> meshes;  ///< One for each batch.
-  std::vector<GLuint> textures;        ///< 0 means none.
-};
-
-}  // namespace
-
-struct RendererData {
-  explicit RendererData(const Context& owner) : context(owner) {}
-  RendererData(const RendererData&) = delete;
-  RendererData& operator=(const RendererData&) = delete;
-  // The members are deleted after this body, in the context they belong to. If the driver refuses, the
-  // context and its objects are gone.
-  ~RendererData() { static_cast<void>(context.make_current()); }
-
-  Context context;
-  RendererOptions options;
-  Programs programs;
-  PictureTarget picture;
-  std::optional<ShadowTarget> shadow_map;
-  GpuCache cache;
-  SharedMeshes shared = make_shared_meshes();
-  GlName frame_buffer;
-  GlName instance_buffer;
-  GlName empty_array;  ///< For shaders that make their own vertices.
-  GroundMesh ground;
-  Stream lines;
-  Stream texts;
-};
-
-namespace {
+/// How far things darken each other, in distances of the eye from its target.
+constexpr float kOcclusionRadius = 0.09F;
 
 void set_float_attribute(GLuint location, GLint size, std::size_t stride, std::size_t offset,
                          GLuint divisor) {
@@ -156,55 +107,35 @@ Result<Prepared> prepare(RendererData& data, const DrawList& list) {
   return prepared;
 }
 
-void draw_batch(const RendererData& data, const Batch& batch, const GpuMesh& mesh) {
-  glBindVertexArray(mesh.vertex_array.name());
-  glBindBuffer(GL_ARRAY_BUFFER, data.instance_buffer.name());
-  const std::size_t start = batch.first_instance * sizeof(Instance);
-  for (std::size_t row = 0; row < 3; ++row) {
-    const std::size_t place = start + offsetof(Instance, rows) + 4 * sizeof(float) * row;
-    set_float_attribute(static_cast<GLuint>(3 + row), 4, sizeof(Instance), place, 1);
+MeshLook look_of(const Batch& batch) {
+  if (batch.alpha == AlphaMode::kBlend) return MeshLook::kClear;
+  switch (batch.shading) {
+    case Shading::kCloth:
+      return MeshLook::kCloth;
+    case Shading::kRope:
+      return MeshLook::kRope;
+    case Shading::kHair:
+      return MeshLook::kHair;
+    case Shading::kSolid:
+      break;
   }
-  set_float_attribute(6, 4, sizeof(Instance), start + offsetof(Instance, color), 1);
-  set_float_attribute(7, 2, sizeof(Instance), start + offsetof(Instance, gloss), 1);
-  glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
-  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(batch.index_count), GL_UNSIGNED_INT,
-                          buffer_offset(batch.first_index * sizeof(std::uint32_t)),
-                          static_cast<GLsizei>(batch.instance_count));
+  return MeshLook::kSolid;
 }
 
-void bind_surface(GLuint texture) {
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, texture);
-}
-
-void draw_shadow_map(const RendererData& data, const Prepared& prepared) {
-  glBindFramebuffer(GL_FRAMEBUFFER, data.shadow_map->framebuffer.name());
-  glViewport(0, 0, data.shadow_map->size, data.shadow_map->size);
-  glDepthMask(GL_TRUE);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  // Open surfaces cast shadows from both sides.
-  glDisable(GL_CULL_FACE);
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(1.5F, 2);
-  for (std::size_t i = 0; i < prepared.meshes.size(); ++i) {
-    const Batch& batch = prepared.batches.batches[i];
-    if (!batch.casts_shadow) continue;
-    const bool holed = batch.alpha != AlphaMode::kOpaque && prepared.textures[i] != 0;
-    glUseProgram(holed ? data.programs.cutout_shadow.name() : data.programs.shadow.name());
-    if (holed) bind_surface(prepared.textures[i]);
-    draw_batch(data, batch, *prepared.meshes[i]);
-  }
-  glDisable(GL_POLYGON_OFFSET_FILL);
+/// Ropes and hairs have no texture.
+const MeshProgram& program_of(const Programs& programs, const Batch& batch, GLuint texture) {
+  const auto& pair = programs.meshes[static_cast<std::size_t>(look_of(batch))];
+  return texture != 0 && pair[1].program.name() != 0 ? pair[1] : pair[0];
 }
 
 void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_through) {
-  glUseProgram(data.programs.mesh.name());
   for (std::size_t i = 0; i < prepared.meshes.size(); ++i) {
     const Batch& batch = prepared.batches.batches[i];
     if ((batch.alpha == AlphaMode::kBlend) != see_through) continue;
-    glUniform1i(data.programs.mesh_has_texture, prepared.textures[i] != 0 ? 1 : 0);
-    glUniform1i(data.programs.mesh_alpha_mode, static_cast<GLint>(batch.alpha));
-    bind_surface(prepared.textures[i]);
+    const MeshProgram& program = program_of(data.programs, batch, prepared.textures[i]);
+    glUseProgram(program.program.name());
+    if (program.alpha_mode >= 0) glUniform1i(program.alpha_mode, static_cast<GLint>(batch.alpha));
+    bind_texture(kSurfaceUnit, prepared.textures[i]);
     if (batch.alpha == AlphaMode::kCutout) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     if (see_through && batch.two_sided) {
       // The far side is drawn first.
@@ -224,19 +155,15 @@ void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_th
   }
 }
 
-void draw_ground(const RendererData& data, const Ground& ground, const View& view, float fog_distance) {
-  const float above = view.eye.y - ground.height;
-  if (!(above > 0)) return;
-  // The rim is far enough to be less than a pixel below the horizon and deep in the fog.
-  const float scale = std::max(above, 6 * fog_distance / kGroundRadius);
+void draw_ground(const RendererData& data, const Ground& ground, const std::array<float, 4>& plane) {
   const auto color = linear_of(ground.color);
   const auto line = linear_of(ground.line_color);
-  const Programs& p = data.programs;
-  glUseProgram(p.ground.name());
-  glUniform4f(p.ground_plane, view.eye.x, ground.height, view.eye.z, scale);
-  glUniform4f(p.ground_color, color[0], color[1], color[2], 1);
-  glUniform4f(p.ground_grid_color, line[0], line[1], line[2], std::max(ground.grid_spacing, 0.0F));
-  glUniform2f(p.ground_grid_origin, ground.grid_x, ground.grid_z);
+  const GroundProgram& p = data.programs.ground;
+  glUseProgram(p.program.name());
+  glUniform4fv(p.plane, 1, plane.data());
+  glUniform4f(p.color, color[0], color[1], color[2], 1);
+  glUniform4f(p.grid_color, line[0], line[1], line[2], std::max(ground.grid_spacing, 0.0F));
+  glUniform2f(p.grid_origin, ground.grid_x, ground.grid_z);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CCW);
   glBindVertexArray(data.ground.vertex_array.name());
@@ -280,28 +207,38 @@ void draw_texts(const RendererData& data, const std::vector<DrawText>& texts) {
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(triangles.size()));
 }
 
-void draw_picture(const RendererData& data, const DrawList& list, const Prepared& prepared, const View& view,
-                  float fog_distance) {
-  glBindFramebuffer(GL_FRAMEBUFFER, data.picture.sampled_framebuffer.name());
+/// Binds what the shaders of light read.
+void bind_light(const RendererData& data) {
+  const GLuint map = data.shadow_map ? data.shadow_map->texture.name() : 0;
+  bind_texture(kShadowUnit, map);
+  bind_texture(kShadowDepthUnit, map);
+  glBindSampler(kShadowDepthUnit, data.raw_depths.name());
+  bind_texture(kOcclusionUnit, data.occlusion ? data.occlusion->textures[1].name() : 0);
+  bind_texture(kNoiseUnit, data.noise.name());
+}
+
+void draw_picture(const RendererData& data, const DrawList& list, const Prepared& prepared,
+                  const std::array<float, 4>* plane) {
+  glBindFramebuffer(GL_FRAMEBUFFER, drawn_framebuffer(data.picture).name());
   glViewport(0, 0, data.picture.width, data.picture.height);
-  glEnable(GL_FRAMEBUFFER_SRGB);
   glDepthMask(GL_TRUE);
   // No color is cleared, because the sky covers every pixel that nothing else does.
   glClear(GL_DEPTH_BUFFER_BIT);
-  glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, data.shadow_map ? data.shadow_map->texture.name() : 0);
+  bind_light(data);
   glCullFace(GL_BACK);
   draw_meshes(data, prepared, false);
-  if (list.ground) draw_ground(data, *list.ground, view, fog_distance);
+  if (plane != nullptr) draw_ground(data, *list.ground, *plane);
   draw_sky(data);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   draw_lines(data, list.lines);
+  // What is behind is multiplied by the second color of the shader.
+  glBlendFunc(GL_ONE, GL_SRC1_COLOR);
   draw_meshes(data, prepared, true);
   glDisable(GL_BLEND);
   draw_texts(data, list.texts);
+  glBindSampler(kShadowDepthUnit, 0);
   resolve(data.picture);
-  glDisable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
@@ -309,6 +246,7 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
 
 /// Resets state that another user of the context (a user interface) may have left.
 void reset_state() {
+  glDisable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_STENCIL_TEST);
@@ -317,10 +255,27 @@ void reset_state() {
   glDepthFunc(GL_LEQUAL);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-  for (GLuint unit = 0; unit < 2; ++unit) glBindSampler(unit, 0);
+  for (GLuint unit = 0; unit < kTextureUnits; ++unit) glBindSampler(unit, 0);
 }
 
 }  // namespace
+
+void draw_batch(const RendererData& data, const Batch& batch, const GpuMesh& mesh) {
+  glBindVertexArray(mesh.vertex_array.name());
+  glBindBuffer(GL_ARRAY_BUFFER, data.instance_buffer.name());
+  const std::size_t start = batch.first_instance * sizeof(Instance);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::size_t place = start + offsetof(Instance, rows) + 4 * sizeof(float) * row;
+    set_float_attribute(static_cast<GLuint>(3 + row), 4, sizeof(Instance), place, 1);
+  }
+  set_float_attribute(6, 4, sizeof(Instance), start + offsetof(Instance, color), 1);
+  set_float_attribute(7, 4, sizeof(Instance), start + offsetof(Instance, surface), 1);
+  set_float_attribute(8, 1, sizeof(Instance), start + offsetof(Instance, clear), 1);
+  glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(batch.index_count), GL_UNSIGNED_INT,
+                          buffer_offset(batch.first_index * sizeof(std::uint32_t)),
+                          static_cast<GLsizei>(batch.instance_count));
+}
 
 Renderer::Renderer(std::unique_ptr<RendererData> data) : data_(std::move(data)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -339,7 +294,7 @@ Result<Renderer> Renderer::create(const Context& context, const RendererOptions&
   if (!current) return current.error();
   auto data = std::make_unique<RendererData>(context);
   data->options = options;
-  auto programs = make_programs();
+  auto programs = make_programs(options.fast);
   if (!programs) return programs.error();
   data->programs = std::move(programs).value();
   auto picture = make_picture_target(options.width, options.height, options.samples);
@@ -350,6 +305,16 @@ Result<Renderer> Renderer::create(const Context& context, const RendererOptions&
     if (!shadow_map) return shadow_map.error();
     data->shadow_map = std::move(shadow_map).value();
   }
+  if (options.occlusion) {
+    auto occlusion = make_occlusion_target(options.width, options.height, options.fast ? 4 : 2);
+    if (!occlusion) return occlusion.error();
+    data->occlusion = std::move(occlusion).value();
+  }
+  data->raw_depths = make_sampler();
+  glSamplerParameteri(data->raw_depths.name(), GL_TEXTURE_COMPARE_MODE, GL_NONE);
+  glSamplerParameteri(data->raw_depths.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glSamplerParameteri(data->raw_depths.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  data->noise = make_noise_texture();
   data->frame_buffer = make_buffer();
   data->instance_buffer = make_buffer();
   data->empty_array = make_vertex_array();
@@ -367,6 +332,11 @@ Result<void> Renderer::resize(int width, int height) {
   if (!current) return current;
   auto picture = make_picture_target(width, height, data_->options.samples);
   if (!picture) return picture.error();
+  if (data_->options.occlusion) {
+    auto occlusion = make_occlusion_target(width, height, data_->options.fast ? 4 : 2);
+    if (!occlusion) return occlusion.error();
+    data_->occlusion = std::move(occlusion).value();
+  }
   data_->picture = std::move(picture).value();
   return {};
 }
@@ -386,14 +356,25 @@ Result<void> Renderer::draw(const DrawList& list) {
   const ShadowView shadow =
       make_shadow_view(view, batches.casters, list.sun.direction, std::max(map_size, 1));
   FrameUniforms frame = make_frame(list, view, shadow, map_size);
-  frame.viewport = {static_cast<float>(data.picture.width), static_cast<float>(data.picture.height), 0, 0};
+  frame.viewport = {static_cast<float>(data.picture.width), static_cast<float>(data.picture.height),
+                    kOcclusionRadius * length(list.camera.target - list.camera.eye),
+                    data.occlusion ? 1.0F : 0.0F};
   glBindBuffer(GL_UNIFORM_BUFFER, data.frame_buffer.name());
   glBufferData(GL_UNIFORM_BUFFER, sizeof(frame), &frame, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, data.frame_buffer.name());
 
   reset_state();
   if (map_size > 0) draw_shadow_map(data, prepared.value());
-  draw_picture(data, list, prepared.value(), view, frame.shadow_info[3]);
+  const bool from_above = list.ground && view.eye.y > list.ground->height;
+  const auto plane =
+      from_above ? ground_plane(*list.ground, view.eye, frame.shadow_info[3]) : std::array<float, 4>{};
+  const std::array<float, 4>* const ground = from_above ? &plane : nullptr;
+  if (data.occlusion) {
+    const float half_height = std::max(length(view.up), 1e-6F);
+    draw_occlusion(data, prepared.value(), ground,
+                   0.5F * static_cast<float>(data.occlusion->height) / half_height);
+  }
+  draw_picture(data, list, prepared.value(), ground);
   return take_gl_error("draw");
 }
 
@@ -415,7 +396,7 @@ Result<void> Renderer::present(int width, int height) const {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, width, height);
   glUseProgram(data_->programs.present.name());
-  bind_surface(data_->picture.texture.name());
+  bind_texture(kSurfaceUnit, data_->picture.texture.name());
   glBindVertexArray(data_->empty_array.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);

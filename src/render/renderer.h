@@ -15,6 +15,10 @@ struct RendererOptions {
   int height = 720;
   int samples = 4;             ///< Samples per pixel, for smooth edges; 1 is none. The driver may give fewer.
   int shadow_map_size = 2048;  ///< Size [px], 256 to 8192; 0 draws no shadows.
+  /// Whether soft shadows and fine grain are left out, and occlusion is coarser, for drivers without a
+  /// graphics card.
+  bool fast = false;
+  bool occlusion = true;  ///< Whether things near each other keep the light of the sky from one another.
 };
 
 struct RendererData;

@@ -33,6 +33,12 @@ void update_normals(MeshGeometry& geometry);
 /// Adds the smooth tube of a rope to `geometry`: round cross sections along a Catmull-Rom curve, half spheres
 /// at the ends. Repeated points and points that are not finite are left out; fewer than two others add
 /// nothing.
+/// Texture coordinate u goes around once, v along it in circumferences.
 void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry);
+
+/// Adds a tuft of hairs that follow the points: strips that face the eye, with the direction along the hair
+/// in place of the normal, u a number of the hair's own and v from 0 at the root to 1 at the tip. `radius` is
+/// that of the one hair that was simulated for the tuft. Points are left out as for a tube.
+void add_tuft(std::span<const Vec3> points, float radius, Vec3 eye, MeshGeometry& geometry);
 
 }  // namespace hooke::render

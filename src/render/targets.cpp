@@ -22,6 +22,19 @@ GlName make_sampled_storage(GLenum format, int samples, int width, int height) {
   return storage;
 }
 
+/// Binds a new texture of that size, whose filter and rim are set.
+GlName make_plain_texture(GLint format, int width, int height, GLenum layout, GLenum type, GLint filter) {
+  GlName texture = make_texture();
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, layout, type, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return texture;
+}
+
 }  // namespace
 
 Result<PictureTarget> make_picture_target(int width, int height, int samples) {
@@ -36,34 +49,32 @@ Result<PictureTarget> make_picture_target(int width, int height, int samples) {
   PictureTarget target;
   target.width = width;
   target.height = height;
-  target.sampled_framebuffer = make_framebuffer();
-  glBindFramebuffer(GL_FRAMEBUFFER, target.sampled_framebuffer.name());
-  target.sampled_color = make_sampled_storage(GL_SRGB8_ALPHA8, given > 1 ? given : 0, width, height);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                            target.sampled_color.name());
-  target.sampled_depth = make_sampled_storage(GL_DEPTH_COMPONENT24, given > 1 ? given : 0, width, height);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                            target.sampled_depth.name());
-  const auto sampled = check_framebuffer(where);
-  if (!sampled) return sampled.error();
-
+  target.is_sampled = given > 1;
+  target.texture = make_plain_texture(GL_RGBA8, width, height, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR);
   target.framebuffer = make_framebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.name());
-  target.texture = make_texture();
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, target.texture.name());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.texture.name(), 0);
-  const auto resolved = check_framebuffer(where);
-  if (!resolved) return resolved.error();
+  target.depth = make_sampled_storage(GL_DEPTH_COMPONENT24, target.is_sampled ? given : 0, width, height);
+  if (target.is_sampled) {
+    target.sampled_framebuffer = make_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, target.sampled_framebuffer.name());
+    target.sampled_color = make_sampled_storage(GL_RGBA8, given, width, height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                              target.sampled_color.name());
+  }
+  // Depth belongs to what is drawn into, which is bound now.
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth.name());
+  const auto complete = check_framebuffer(where);
+  if (!complete) return complete.error();
   return target;
 }
 
+const GlName& drawn_framebuffer(const PictureTarget& target) {
+  return target.is_sampled ? target.sampled_framebuffer : target.framebuffer;
+}
+
 void resolve(const PictureTarget& target) {
+  if (!target.is_sampled) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target.sampled_framebuffer.name());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.name());
   glBlitFramebuffer(0, 0, target.width, target.height, 0, 0, target.width, target.height, GL_COLOR_BUFFER_BIT,
@@ -93,15 +104,8 @@ Result<ShadowTarget> make_shadow_target(int size) {
   }
   ShadowTarget target;
   target.size = size;
-  target.texture = make_texture();
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, target.texture.name());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-               nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  target.texture =
+      make_plain_texture(GL_DEPTH_COMPONENT24, size, size, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   target.framebuffer = make_framebuffer();
@@ -111,6 +115,31 @@ Result<ShadowTarget> make_shadow_target(int size) {
   glReadBuffer(GL_NONE);
   const auto complete = check_framebuffer(where);
   if (!complete) return complete.error();
+  return target;
+}
+
+Result<OcclusionTarget> make_occlusion_target(int width, int height, int part) {
+  OcclusionTarget target;
+  target.width = std::max((width + part - 1) / part, 1);
+  target.height = std::max((height + part - 1) / part, 1);
+  target.depth = make_plain_texture(GL_DEPTH_COMPONENT24, target.width, target.height, GL_DEPTH_COMPONENT,
+                                    GL_UNSIGNED_INT, GL_NEAREST);
+  target.depth_framebuffer = make_framebuffer();
+  glBindFramebuffer(GL_FRAMEBUFFER, target.depth_framebuffer.name());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth.name(), 0);
+  glDrawBuffer(GL_NONE);
+  glReadBuffer(GL_NONE);
+  const auto depth = check_framebuffer("occlusion depth");
+  if (!depth) return depth.error();
+  for (std::size_t i = 0; i < 2; ++i) {
+    target.textures[i] =
+        make_plain_texture(GL_RG8, target.width, target.height, GL_RG, GL_UNSIGNED_BYTE, GL_LINEAR);
+    target.framebuffers[i] = make_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffers[i].name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.textures[i].name(), 0);
+    const auto seen = check_framebuffer("occlusion");
+    if (!seen) return seen.error();
+  }
   return target;
 }
 

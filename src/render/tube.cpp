@@ -9,7 +9,12 @@ namespace hooke::render {
 namespace {
 
 constexpr int kSides = 14;
+constexpr std::uint32_t kRing = kSides + 1;  ///< Vertices of a ring.
 constexpr int kTubeCapRings = 4;
+
+constexpr std::uint32_t kHairs = 24;  ///< Hairs of a tuft.
+constexpr float kTuftRadius = 4;      ///< Radius of a tuft, in radii of the hair that was simulated.
+constexpr float kHairRadius = 0.28F;  ///< Radius of a drawn hair, likewise.
 
 /// A Station is a point of the curve and its unit tangent.
 struct Station {
@@ -68,21 +73,22 @@ std::vector<Station> make_stations(const std::vector<Vec3>& points, float radius
 
 /// Adds a circle of vertices about `center`. Their normals are across the axis where `lean` is 0 and along it
 /// where `lean` is 1.
-void add_ring(Vec3 center, float radius, const Mat3& frame, float lean, MeshGeometry& geometry) {
+void add_ring(Vec3 center, float radius, const Mat3& frame, float lean, float v, MeshGeometry& geometry) {
   const float flat = std::sqrt(std::max(1 - lean * lean, 0.0F));
-  for (int i = 0; i < kSides; ++i) {
+  // The last vertex is the first again with another texture coordinate.
+  for (int i = 0; i <= kSides; ++i) {
     const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / kSides;
     const Vec3 normal = flat * (std::cos(angle) * frame.x + std::sin(angle) * frame.y) + lean * frame.z;
-    geometry.vertices.push_back({center + radius * normal, normal, static_cast<float>(i) / kSides, 0});
+    geometry.vertices.push_back({center + radius * normal, normal, static_cast<float>(i) / kSides, v});
   }
 }
 
 void join_rings(std::uint32_t first, std::uint32_t ring_count, MeshGeometry& geometry) {
   for (std::uint32_t ring = 0; ring + 1 < ring_count; ++ring) {
     for (std::uint32_t i = 0; i < kSides; ++i) {
-      const std::uint32_t a = first + ring * kSides + i;
-      const std::uint32_t b = first + ring * kSides + (i + 1) % kSides;
-      geometry.indices.insert(geometry.indices.end(), {a, b, a + kSides, a + kSides, b, b + kSides});
+      const std::uint32_t a = first + ring * kRing + i;
+      const std::uint32_t b = a + 1;
+      geometry.indices.insert(geometry.indices.end(), {a, b, a + kRing, a + kRing, b, b + kRing});
     }
   }
 }
@@ -95,7 +101,78 @@ Mat3 carried_frame(const Mat3& frame, Vec3 tangent) {
   return {x, cross(tangent, x), tangent};
 }
 
+/// Returns a number from 0 to 1 that is the same for the same hair in every picture.
+float lot_of(std::uint32_t hair, std::uint32_t salt) {
+  std::uint32_t x = (hair + 1) * 0x9E3779B9U ^ salt * 0x85EBCA6BU;
+  x = (x ^ (x >> 16)) * 0x7FEB352DU;
+  x = (x ^ (x >> 15)) * 0x846CA68BU;
+  return static_cast<float>((x ^ (x >> 16)) >> 8) / 16777216;
+}
+
+/// The place of one hair within its tuft.
+struct HairPlace {
+  float angle = 0;     ///< Direction from the middle.
+  float share = 0;     ///< Distance from the middle, in radii of the tuft.
+  float length = 1;    ///< In lengths of the tuft.
+  float waviness = 0;  ///< In radii of the tuft.
+  float lot = 0;
+};
+
+HairPlace hair_place(std::uint32_t hair, std::uint32_t tuft) {
+  const std::uint32_t seed = hair + 131 * tuft;
+  return {2 * std::numbers::pi_v<float> * lot_of(seed, 1), std::sqrt(lot_of(seed, 2)),
+          0.86F + 0.14F * lot_of(seed, 3), 0.5F * lot_of(seed, 4), lot_of(seed, 5)};
+}
+
+/// Adds one hair as a strip that faces the eye and grows thin toward its tip.
+void add_hair(std::span<const Station> stations, std::span<const Mat3> frames, const HairPlace& place,
+              const std::array<float, 2>& radii, Vec3 eye, MeshGeometry& geometry) {
+  const auto first = static_cast<std::uint32_t>(geometry.vertices.size());
+  const auto count =
+      static_cast<std::size_t>(std::max(2.0F, std::ceil(place.length * static_cast<float>(stations.size()))));
+  const auto last = static_cast<float>(count - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float v = static_cast<float>(i) / last;
+    // Hairs lie close at the root and the tip, and apart between.
+    const float spread = radii[0] * (0.55F + 0.9F * v - 0.75F * v * v);
+    const float wave = place.waviness * std::sin(9 * v + 6.283F * place.lot);
+    const float x = place.share * std::cos(place.angle) + wave * v;
+    const float y = place.share * std::sin(place.angle) + wave * (1 - v) * v;
+    const Vec3 center = stations[i].point + spread * (x * frames[i].x + y * frames[i].y);
+    const Vec3 along = stations[i].tangent;
+    Vec3 side = normalize(cross(along, eye - center));
+    if (side == Vec3{}) side = frames[i].x;
+    const float half = radii[1] * std::max(1 - v * v * v * v, 0.15F);
+    geometry.vertices.push_back({center - half * side, along, place.lot, v});
+    geometry.vertices.push_back({center + half * side, along, place.lot, v});
+  }
+  for (std::uint32_t i = 0; i + 1 < static_cast<std::uint32_t>(count); ++i) {
+    const std::uint32_t a = first + 2 * i;
+    geometry.indices.insert(geometry.indices.end(), {a, a + 1, a + 2, a + 2, a + 1, a + 3});
+  }
+}
+
 }  // namespace
+
+void add_tuft(std::span<const Vec3> points, float radius, Vec3 eye, MeshGeometry& geometry) {
+  if (!(radius > 0) || !std::isfinite(radius)) return;
+  const std::vector<Vec3> usable = usable_points(points, radius);
+  if (usable.size() < 2) return;
+  const std::vector<Station> stations = make_stations(usable, 4 * radius);
+  std::vector<Mat3> frames;
+  const Vec3 start = stations.front().tangent;
+  const Vec3 aside = std::abs(start.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+  Mat3 frame = carried_frame({cross(aside, start), aside, start}, start);
+  for (const Station& station : stations) {
+    if (station.tangent != Vec3{}) frame = carried_frame(frame, station.tangent);
+    frames.push_back(frame);
+  }
+  // The tuft is told from others by how many were before it.
+  const auto tuft = static_cast<std::uint32_t>(geometry.indices.size() % 65521);
+  for (std::uint32_t hair = 0; hair < kHairs; ++hair)
+    add_hair(stations, frames, hair_place(hair, tuft), {kTuftRadius * radius, kHairRadius * radius}, eye,
+             geometry);
+}
 
 void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry) {
   if (!(radius > 0) || !std::isfinite(radius)) return;
@@ -114,16 +191,20 @@ void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry
     return std::sin(0.5F * std::numbers::pi_v<float> * static_cast<float>(ring) / kTubeCapRings);
   };
   for (int ring = kTubeCapRings; ring > 0; --ring) {
-    add_ring(stations.front().point, ring_radius, frame, -lean_of(ring), geometry);
+    add_ring(stations.front().point, ring_radius, frame, -lean_of(ring), 0, geometry);
   }
-  for (const Station& station : stations) {
+  const float circumference = 2 * std::numbers::pi_v<float> * radius;
+  float along = 0;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Station& station = stations[i];
+    if (i > 0) along += length(station.point - stations[i - 1].point) / circumference;
     if (station.tangent != Vec3{}) frame = carried_frame(frame, station.tangent);
-    add_ring(station.point, ring_radius, frame, 0, geometry);
+    add_ring(station.point, ring_radius, frame, 0, along, geometry);
   }
   for (int ring = 1; ring <= kTubeCapRings; ++ring) {
-    add_ring(stations.back().point, ring_radius, frame, lean_of(ring), geometry);
+    add_ring(stations.back().point, ring_radius, frame, lean_of(ring), along, geometry);
   }
-  const auto rings = (static_cast<std::uint32_t>(geometry.vertices.size()) - first) / kSides;
+  const auto rings = (static_cast<std::uint32_t>(geometry.vertices.size()) - first) / kRing;
   join_rings(first, rings, geometry);
 }
 

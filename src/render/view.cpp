@@ -153,6 +153,7 @@ ShadowView make_shadow_view(const View& view, const Bounds& casters, Vec3 direct
   const float slack = 8 * shadow.texel_size;
   box = {{x - 0.5F * side, y - 0.5F * side, box.low.z - slack},
          {x + 0.5F * side, y + 0.5F * side, box.high.z + slack}};
+  shadow.depth = box.high.z - box.low.z;
   shadow.clip_matrix = make_orthographic(box) * look;
   const Mat4 to_texture = affine(Mat3{{0.5F, 0, 0}, {0, 0.5F, 0}, {0, 0, 0.5F}}, Vec3{0.5F, 0.5F, 0.5F});
   shadow.matrix = to_texture * shadow.clip_matrix;

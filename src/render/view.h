@@ -48,6 +48,7 @@ struct ShadowView {
   Mat4 matrix;           ///< Matrix to texture space: 0 to 1 in x, y and depth.
   Mat4 clip_matrix;      ///< Matrix to clip space, for drawing the map.
   float texel_size = 0;  ///< [m]
+  float depth = 0;       ///< Length of the view along the sun's rays [m].
 };
 
 /// Makes the shadow view; `direction` points to the sun. The box moves and grows in steps, so that shadow

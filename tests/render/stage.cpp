@@ -53,7 +53,7 @@ render::DrawMesh make_mesh(render::MeshGeometry geometry, render::Color color) {
   render::DrawMesh mesh;
   mesh.geometry = std::make_shared<const render::MeshGeometry>(std::move(geometry));
   mesh.color = color;
-  mesh.specular = 0;
+  mesh.surface.roughness = 1;
   return mesh;
 }
 

@@ -20,10 +20,11 @@ constexpr float kLeastRopeRadius = 1.2F;  ///< Half the least width of a rope [p
 /// Spheres with a radius above the first [px] are drawn by the finest level, smaller ones by the next, and
 /// below the second by the coarsest. None is more than half a pixel off.
 constexpr std::array<float, 2> kLevelRadius = {40, 10};
-constexpr float kSlabWidth = 20;       ///< Slabs are wider than this many times their thickness.
 constexpr float kIronDensity = 7800;   ///< [kg/m^3]
 constexpr float kHookRadius = 0.008F;  ///< Radius of the line that shows a distance hook [m].
-const render::Color kIron = {0.30F, 0.31F, 0.33F};
+const render::Color kIron = {0.56F, 0.57F, 0.58F};
+const render::Surface kIronSurface = {render::Shading::kSolid, 1, 0.5F, 0, 0, 0};
+constexpr float kClothSheen = 0.35F;
 
 float srgb_of(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
@@ -106,13 +107,6 @@ const Model* drawn_materials(const Shape& shape, const std::shared_ptr<const Mod
   return shape.kind == ShapeKind::kMesh ? model.get() : nullptr;
 }
 
-/// A slab serves as ground: it casts no shadow, because the shadow would lie below it and take the whole
-/// shadow map.
-bool is_slab(const Shape& shape) {
-  const Vec3 half = shape.half_extents;
-  return shape.kind == ShapeKind::kBox && std::min(half.x, half.z) > kSlabWidth * half.y;
-}
-
 std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object,
                                    const TextureLoader& textures, BodyGeometries& geometries) {
   if (object.visual != nullptr) {
@@ -124,8 +118,7 @@ std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object
     const Look look = {object.kind, object.material, object.look,
                        drawn_materials(object.shape, object.model)};
     return {{.geometry = geometries.find(object.shape, object.model),
-             .ranges = ranges_of(scene, look, textures),
-             .casts_shadow = !is_slab(object.shape)}};
+             .ranges = ranges_of(scene, look, textures)}};
   }
   std::vector<FigureSolid> solids;
   for (const SceneObject::Part& part : object.parts) {
@@ -189,13 +182,23 @@ void prepare_points(const Simulation& simulation, const SceneObject& object, Fig
   }
 }
 
-/// Shiny surfaces reflect more of the sun, in a smaller spot.
-float specular_of(float shininess) {
-  return std::clamp(0.03F + 0.004F * shininess, 0.03F, 0.45F);
+/// Returns the roughness whose highlight is as wide as that of Blinn and Phong's exponent (Walter and others,
+/// 2007).
+float roughness_of(float shininess) {
+  return std::pow(2 / (shininess + 2), 0.25F);
+}
+
+render::Surface surface_of(const Finish& finish, render::Shading shading) {
+  return {.shading = shading,
+          .metalness = 0,
+          .roughness = roughness_of(finish.shininess),
+          .sheen = shading == render::Shading::kCloth ? kClothSheen : 0,
+          .transmission = 0,
+          .threads = 0};
 }
 
 /// Returns a mesh to be drawn with one finish.
-render::DrawMesh painted(const PaintedRange& range) {
+render::DrawMesh painted(const PaintedRange& range, render::Shading shading) {
   const Finish& finish = range.finish;
   render::DrawMesh mesh;
   mesh.first_index = range.first;
@@ -203,8 +206,7 @@ render::DrawMesh painted(const PaintedRange& range) {
   mesh.texture = finish.texture;
   mesh.color = finish.color;
   mesh.opacity = finish.opacity;
-  mesh.shininess = finish.shininess;
-  mesh.specular = specular_of(finish.shininess);
+  mesh.surface = surface_of(finish, shading);
   const bool holed = finish.texture != nullptr && finish.texture->channels == 4;
   mesh.alpha = holed ? render::AlphaMode::kCutout : render::AlphaMode::kOpaque;
   return mesh;
@@ -217,7 +219,7 @@ bool add_ground(const Figure& figure, const FigurePlace& place, render::DrawList
   const Finish& finish = figure.solids.front().ranges.front().finish;
   ground.height = place.position.y;
   ground.color = finish.color;
-  ground.line_color = {0.78F * finish.color.r, 0.78F * finish.color.g, 0.78F * finish.color.b};
+  ground.line_color = {0.88F * finish.color.r, 0.88F * finish.color.g, 0.88F * finish.color.b};
   ground.grid_spacing = 1;
   ground.grid_x = place.position.x;
   ground.grid_z = place.position.z;
@@ -234,10 +236,9 @@ void add_body(const Figure& figure, const FigurePlace& place, render::DrawList& 
     const std::size_t level = radius > kLevelRadius[0] ? 0 : radius > kLevelRadius[1] ? 1 : 2;
     if (solid.geometry.levels[level] == nullptr) continue;
     for (const PaintedRange& range : solid.ranges) {
-      render::DrawMesh mesh = painted(range);
+      render::DrawMesh mesh = painted(range, render::Shading::kSolid);
       mesh.geometry = solid.geometry.levels[level];
       mesh.transform = body * transform_of(solid);
-      mesh.casts_shadow = solid.casts_shadow;
       list.meshes.push_back(std::move(mesh));
     }
   }
@@ -246,8 +247,9 @@ void add_body(const Figure& figure, const FigurePlace& place, render::DrawList& 
 void add_cloth(Figure& figure, const FigurePlace& place, render::DrawList& list) {
   if (!figure.surface) return;
   update_surface(*figure.surface, place.points);
+  const bool is_cloth = figure.kind == SceneObject::Kind::kCloth;
   for (const PaintedRange& range : figure.ranges) {
-    render::DrawMesh mesh = painted(range);
+    render::DrawMesh mesh = painted(range, is_cloth ? render::Shading::kCloth : render::Shading::kSolid);
     mesh.geometry = figure.surface->geometry;
     mesh.transform = affine(Mat3{}, Vec3{});
     mesh.two_sided = true;
@@ -271,8 +273,7 @@ void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& 
           {{points + static_cast<std::ptrdiff_t>(first), points + static_cast<std::ptrdiff_t>(end)},
            radius,
            finish.color,
-           finish.shininess,
-           specular_of(finish.shininess)});
+           surface_of(finish, render::Shading::kRope)});
     }
     first = end;
   };
@@ -283,7 +284,7 @@ void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& 
 void add_loads(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
   for (const FigureLoad& load : figure.loads) {
     if (load.point < place.points.size())
-      list.spheres.push_back({place.points[load.point], load.radius, kIron});
+      list.spheres.push_back({place.points[load.point], load.radius, kIron, kIronSurface});
   }
 }
 
@@ -297,7 +298,7 @@ void add_springs(const Figure& figure, const FigurePlace& place, render::DrawLis
     if (round) {
       const float radius =
           visible_radius(0.3F * std::min(figure.radii[spring.a], figure.radii[spring.b]), from, place);
-      list.ropes.push_back({{from, to}, radius, finish.color, finish.shininess, 0.1F});
+      list.ropes.push_back({{from, to}, radius, finish.color, surface_of(finish, render::Shading::kSolid)});
     } else {
       list.lines.push_back({from, to, finish.color, 1, 1.5F});
     }

@@ -38,7 +38,6 @@ struct FigureSolid {
   Vec3 position = {};  ///< Position in the body's frame [m].
   Quat rotation = {};
   std::vector<PaintedRange> ranges;
-  bool casts_shadow = true;
 };
 
 /// This is a weight that is tied to a point.

@@ -244,9 +244,14 @@ Result<void> run_window(Session& session, const ViewOptions& options) {
   if (auto opened = window.log.open(options.log); !opened) return opened;
   const auto context = render::Context::create_window(options.title, options.width, options.height);
   if (!context) return context.error();
-  const int automatic = context.value().driver().find("llvmpipe") == std::string::npos ? 4 : 1;
-  const int samples = options.samples > 0 ? options.samples : automatic;
-  auto renderer = render::Renderer::create(context.value(), {options.width, options.height, samples, 2048});
+  const bool fast = context.value().driver().find("llvmpipe") != std::string::npos;
+  const int samples = options.samples > 0 ? options.samples : fast ? 1 : 4;
+  auto renderer = render::Renderer::create(context.value(), {.width = options.width,
+                                                             .height = options.height,
+                                                             .samples = samples,
+                                                             .shadow_map_size = fast ? 1024 : 2048,
+                                                             .fast = fast,
+                                                             .occlusion = true});
   if (!renderer) return renderer.error();
   GLFWwindow* handle = context.value().window();
   // This comes before the interface starts, which passes events on to the callbacks that it finds.

@@ -39,6 +39,12 @@ GlName make_texture() {
   return {name, [](GLuint old) { glDeleteTextures(1, &old); }};
 }
 
+GlName make_sampler() {
+  GLuint name = 0;
+  glGenSamplers(1, &name);
+  return {name, [](GLuint old) { glDeleteSamplers(1, &old); }};
+}
+
 GlName make_framebuffer() {
   GLuint name = 0;
   glGenFramebuffers(1, &name);

@@ -41,6 +41,7 @@ class GlName {
 GlName make_buffer();
 GlName make_vertex_array();
 GlName make_texture();
+GlName make_sampler();
 GlName make_framebuffer();
 GlName make_renderbuffer();
 

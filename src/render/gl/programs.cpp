@@ -1,7 +1,5 @@
 #include "render/gl/programs.h"
 
-#include "render/gl/shaders.h"
-
 namespace hooke::render {
 
 namespace {
@@ -14,37 +12,75 @@ Result<void> build(GlName& program, const std::string& title, const ShaderSource
   const GLuint frame = glGetUniformBlockIndex(name, "Frame");
   if (frame != GL_INVALID_INDEX) glUniformBlockBinding(name, frame, 0);
   glUseProgram(name);
-  const auto bind_sampler = [name](const char* sampler, GLint unit) {
+  const auto bind_sampler = [name](const char* sampler, TextureUnit unit) {
     const GLint location = glGetUniformLocation(name, sampler);
-    if (location >= 0) glUniform1i(location, unit);
+    if (location >= 0) glUniform1i(location, static_cast<GLint>(unit));
   };
-  bind_sampler("surface_texture", 0);
-  bind_sampler("picture", 0);
-  bind_sampler("shadow_map", 1);
+  bind_sampler("surface_texture", kSurfaceUnit);
+  bind_sampler("picture", kSurfaceUnit);
+  bind_sampler("depth_map", kSurfaceUnit);
+  bind_sampler("shadow_map", kShadowUnit);
+  bind_sampler("shadow_depth", kShadowDepthUnit);
+  bind_sampler("occlusion_map", kOcclusionUnit);
+  bind_sampler("noise_map", kNoiseUnit);
   return {};
+}
+
+Result<void> build_meshes(Programs& p, bool fast) {
+  for (std::size_t look = 0; look < kMeshLooks; ++look) {
+    for (std::size_t textured = 0; textured < 2; ++textured) {
+      MeshProgram& mesh = p.meshes[look][textured];
+      const auto kind = static_cast<MeshLook>(look);
+      // Ropes and hairs have no texture.
+      if (textured != 0 && (kind == MeshLook::kRope || kind == MeshLook::kHair)) continue;
+      auto built = build(mesh.program, "mesh", mesh_shader(kind, textured != 0, fast));
+      if (!built) return built;
+      mesh.alpha_mode = glGetUniformLocation(mesh.program.name(), "alpha_mode");
+    }
+  }
+  return {};
+}
+
+Result<void> build_holed(HoledProgram& holed, const std::string& title, const ShaderSource& source) {
+  auto built = build(holed.program, title, source);
+  if (!built) return built;
+  holed.density = glGetUniformLocation(holed.program.name(), "density");
+  holed.has_texture = glGetUniformLocation(holed.program.name(), "has_texture");
+  return {};
+}
+
+void find_ground(GroundProgram& ground) {
+  const GLuint name = ground.program.name();
+  ground.plane = glGetUniformLocation(name, "plane");
+  ground.color = glGetUniformLocation(name, "ground_color");
+  ground.grid_color = glGetUniformLocation(name, "grid_color");
+  ground.grid_origin = glGetUniformLocation(name, "grid_origin");
 }
 
 }  // namespace
 
-Result<Programs> make_programs() {
+Result<Programs> make_programs(bool fast) {
   Programs p;
-  const auto all = {build(p.mesh, "mesh", mesh_shader()),
-                    build(p.shadow, "shadow", shadow_shader()),
-                    build(p.cutout_shadow, "cutout_shadow", cutout_shadow_shader()),
-                    build(p.ground, "ground", ground_shader()),
-                    build(p.sky, "sky", sky_shader()),
+  const auto all = {build_meshes(p, fast),
+                    build(p.shadow, "shadow", depth_shader(DepthFrom::kSun, false)),
+                    build_holed(p.holed_shadow, "holed_shadow", depth_shader(DepthFrom::kSun, true)),
+                    build(p.depth, "depth", depth_shader(DepthFrom::kEye, false)),
+                    build_holed(p.holed_depth, "holed_depth", depth_shader(DepthFrom::kEye, true)),
+                    build(p.ground.program, "ground", ground_shader(fast)),
+                    build(p.ground_depth, "ground_depth", ground_depth_shader()),
+                    build(p.sky, "sky", sky_shader(fast)),
+                    build(p.occlusion, "occlusion", occlusion_shader()),
+                    build(p.occlusion_blur, "occlusion_blur", occlusion_blur_shader()),
                     build(p.line, "line", line_shader()),
                     build(p.text, "text", text_shader()),
                     build(p.present, "present", present_shader())};
   for (const auto& built : all) {
     if (!built) return built.error();
   }
-  p.mesh_has_texture = glGetUniformLocation(p.mesh.name(), "has_texture");
-  p.mesh_alpha_mode = glGetUniformLocation(p.mesh.name(), "alpha_mode");
-  p.ground_plane = glGetUniformLocation(p.ground.name(), "plane");
-  p.ground_color = glGetUniformLocation(p.ground.name(), "ground_color");
-  p.ground_grid_color = glGetUniformLocation(p.ground.name(), "grid_color");
-  p.ground_grid_origin = glGetUniformLocation(p.ground.name(), "grid_origin");
+  find_ground(p.ground);
+  p.ground_depth_plane = glGetUniformLocation(p.ground_depth.name(), "plane");
+  p.occlusion_half_pixel = glGetUniformLocation(p.occlusion.name(), "half_pixel");
+  p.occlusion_blur_step = glGetUniformLocation(p.occlusion_blur.name(), "step_over");
   return p;
 }
 

@@ -1,28 +1,65 @@
 #pragma once
 
 #include "render/gl/gl_objects.h"
+#include "render/gl/shaders.h"
+
+#include <array>
 
 namespace hooke::render {
 
-/// These are all compiled shaders. Samplers have fixed units: 0 is the surface or picture, 1 the shadow map.
+/// Each sampler of the shaders has a fixed texture unit.
+enum TextureUnit : GLuint {
+  kSurfaceUnit,      ///< The surface's texture, or the picture that is read.
+  kShadowUnit,       ///< The shadow map, which compares.
+  kShadowDepthUnit,  ///< The shadow map's depths.
+  kOcclusionUnit,
+  kNoiseUnit,
+  kTextureUnits,
+};
+
+/// A program that draws lit triangles.
+struct MeshProgram {
+  GlName program;
+  GLint alpha_mode = -1;
+};
+
+/// A program that draws the depth of what may have holes.
+struct HoledProgram {
+  GlName program;
+  GLint density = -1;
+  GLint has_texture = -1;
+};
+
+struct GroundProgram {
+  GlName program;
+  GLint plane = -1;
+  GLint color = -1;
+  GLint grid_color = -1;
+  GLint grid_origin = -1;
+};
+
+/// These are all compiled shaders.
 struct Programs {
-  GlName mesh;
-  GLint mesh_has_texture = -1;
-  GLint mesh_alpha_mode = -1;
+  std::array<std::array<MeshProgram, 2>, kMeshLooks> meshes;  ///< By look; without and with a texture.
   GlName shadow;
-  GlName cutout_shadow;
-  GlName ground;
-  GLint ground_plane = -1;
-  GLint ground_color = -1;
-  GLint ground_grid_color = -1;
-  GLint ground_grid_origin = -1;
+  HoledProgram holed_shadow;
+  GlName depth;
+  HoledProgram holed_depth;
+  GroundProgram ground;
+  GlName ground_depth;
+  GLint ground_depth_plane = -1;
   GlName sky;
+  GlName occlusion;
+  GLint occlusion_half_pixel = -1;
+  GlName occlusion_blur;
+  GLint occlusion_blur_step = -1;
   GlName line;
   GlName text;
   GlName present;
 };
 
-/// Compiles all shaders, or returns the first error of the driver's compiler.
-Result<Programs> make_programs();
+/// Compiles all shaders, or returns the first error of the driver's compiler. Fast ones leave out soft
+/// shadows and fine grain.
+Result<Programs> make_programs(bool fast);
 
 }  // namespace hooke::render

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 /// \file
@@ -12,13 +13,23 @@ struct ShaderSource {
   std::string fragment;
 };
 
-ShaderSource mesh_shader();           ///< Lit triangles, instanced.
-ShaderSource shadow_shader();         ///< Depth only, instanced.
-ShaderSource cutout_shadow_shader();  ///< Depth where the texture has no hole.
-ShaderSource ground_shader();         ///< The plane with its grid.
-ShaderSource sky_shader();            ///< The gradient behind everything.
-ShaderSource line_shader();           ///< Lines of a width in pixels, instanced.
-ShaderSource text_shader();           ///< Triangles in pixels.
-ShaderSource present_shader();        ///< Shows the finished picture in a window.
+/// Which of the shaders of lit triangles.
+enum class MeshLook { kSolid, kClear, kCloth, kRope, kHair };
+constexpr std::size_t kMeshLooks = 5;
+
+/// Whence depths are seen.
+enum class DepthFrom { kSun, kEye };
+
+ShaderSource mesh_shader(MeshLook look, bool textured, bool fast);  ///< Lit triangles, instanced.
+/// Depth only, instanced; with holes where light goes through.
+ShaderSource depth_shader(DepthFrom from, bool holed);
+ShaderSource ground_shader(bool fast);  ///< The plane with its grid.
+ShaderSource ground_depth_shader();     ///< Depth of the plane from the eye.
+ShaderSource sky_shader(bool fast);     ///< The sky behind everything.
+ShaderSource occlusion_shader();        ///< How much of the sky each pixel sees.
+ShaderSource occlusion_blur_shader();   ///< Evens that out.
+ShaderSource line_shader();             ///< Lines of a width in pixels, instanced.
+ShaderSource text_shader();             ///< Triangles in pixels.
+ShaderSource present_shader();          ///< Shows the finished picture in a window.
 
 }  // namespace hooke::render

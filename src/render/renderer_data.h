@@ -1,0 +1,85 @@
+#pragma once
+
+#include "render/batches.h"
+#include "render/gl/programs.h"
+#include "render/gpu_cache.h"
+#include "render/renderer.h"
+#include "render/targets.h"
+
+#include <optional>
+#include <vector>
+
+/// \file
+/// What the passes of the renderer share. The owning context must be current in all of this.
+
+namespace hooke::render {
+
+/// This is a buffer that is filled anew every frame, and the vertex array that reads it.
+struct Stream {
+  GlName vertex_array;
+  GlName buffer;
+};
+
+struct GroundMesh {
+  GlName vertex_array;
+  GlName buffer;
+  GLsizei vertex_count = 0;
+};
+
+/// Radius of the outermost ring of the ground mesh, whose innermost ring has radius one half.
+constexpr float kGroundRadius = 16384;
+
+/// This is what all passes draw.
+struct Prepared {
+  Batches batches;
+  std::vector<const GpuMesh*> meshes;  ///< One for each batch.
+  std::vector<GLuint> textures;        ///< 0 means none.
+};
+
+struct RendererData {
+  explicit RendererData(const Context& owner) : context(owner) {}
+  RendererData(const RendererData&) = delete;
+  RendererData& operator=(const RendererData&) = delete;
+  // The members are deleted after this body, in the context they belong to. If the driver refuses, the
+  // context and its objects are gone.
+  ~RendererData() { static_cast<void>(context.make_current()); }
+
+  Context context;
+  RendererOptions options;
+  Programs programs;
+  PictureTarget picture;
+  std::optional<ShadowTarget> shadow_map;
+  std::optional<OcclusionTarget> occlusion;
+  GlName raw_depths;  ///< The sampler that reads depths of the shadow map without comparing them.
+  GlName noise;       ///< Texture of clouds and grain.
+  GpuCache cache;
+  SharedMeshes shared = make_shared_meshes();
+  GlName frame_buffer;
+  GlName instance_buffer;
+  GlName empty_array;  ///< For shaders that make their own vertices.
+  GroundMesh ground;
+  Stream lines;
+  Stream texts;
+};
+
+/// Binds a texture to a unit.
+void bind_texture(TextureUnit unit, GLuint texture);
+
+/// Draws one batch with the program in use.
+void draw_batch(const RendererData& data, const Batch& batch, const GpuMesh& mesh);
+
+/// Returns where the ground's mesh is placed: its center and scale. `haze_distance` is that of the frame [m].
+std::array<float, 4> ground_plane(const Ground& ground, Vec3 eye, float haze_distance);
+
+/// Draws depths from the sun into the shadow map.
+void draw_shadow_map(const RendererData& data, const Prepared& prepared);
+
+/// Draws depths from the eye at half the size, and from them how much of the sky each pixel sees. `ground`
+/// may be null; `plane` is that of ground_plane.
+void draw_occlusion(const RendererData& data, const Prepared& prepared, const std::array<float, 4>* plane,
+                    float pixels_per_length);
+
+/// Returns a texture of 256 x 256 pixels that repeats: sums of smooth random numbers, from 0 to 1.
+GlName make_noise_texture();
+
+}  // namespace hooke::render
