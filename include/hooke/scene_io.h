@@ -36,16 +36,36 @@ inline constexpr std::size_t kMostScenePoints = 1'000'000;
 struct SceneMaterial {
   std::string name = {};                            ///< Name that objects refer to; unique.
   std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear red, green and blue, each in [0, 1].
-  std::string texture = {};   ///< Path of an image, relative to the scene file; empty for none.
-  float shininess = 16.0f;    ///< Exponent of Blinn and Phong's highlights. [1, 1000]
-  float opacity = 1.0f;       ///< Opacity; 1 hides what is behind. [0, 1]
-  Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
+  std::string texture = {};  ///< Path of an image, relative to the scene file; empty for none.
+  float shininess = 16.0f;   ///< Exponent of Blinn and Phong's highlights, without a roughness. [1, 1000]
+  float opacity = 1.0f;      ///< Opacity; 1 hides what is behind. [0, 1]
+  std::string like = {};     ///< Name of the library's material that gave what a file does not say; or empty.
+  float metalness = 0.0f;    ///< 0 for an insulator, 1 for a metal. [0, 1]
+  std::optional<Real> roughness = {};     ///< 0 for a mirror, 1 for chalk. [0, 1]
+  float transmission = 0.0f;              ///< Share of the light that goes through. [0, 1]
+  float sheen = 0.35f;                    ///< Light that the fibers of a cloth throw at its rim. [0, 1]
+  std::optional<Real> thread_pitch = {};  ///< Distance of the threads of a cloth [m], positive.
+  bool hair = false;                      ///< Whether ropes are drawn as tufts of hair.
+  // What a file's objects of this material get unless they say it themselves. Objects that are made in C++ do
+  // not.
+  std::optional<Real> density = {};         ///< Of bodies that move and of solids [kg/m^3], positive.
+  std::optional<Real> young_modulus = {};   ///< Of solids [Pa], positive.
+  std::optional<Real> poisson_ratio = {};   ///< Of solids. [0, 0.499]
+  std::optional<Real> areal_density = {};   ///< Of cloths [kg/m^2], positive.
+  std::optional<Real> linear_density = {};  ///< Of ropes [kg/m], positive.
+  std::optional<Real> diameter = {};        ///< Of ropes [m], positive.
+  std::optional<Real> strength = {};        ///< Tension at which ropes break [N], positive.
+  Real friction = Real(0.5);                ///< Coulomb coefficient while sliding. [0, 100]
   /// Coefficient while at rest; `friction` by default. [friction, 100]
   std::optional<Real> static_friction = {};
   Real restitution = Real(0);        ///< Speed after over speed before. [0, 1]
   Real rolling_friction = Real(0);   ///< Lever of the resistance to rolling [m], not negative.
   Real spinning_friction = Real(0);  ///< Lever of the resistance to spin about the normal [m], not negative.
 };
+
+/// Returns the names of the library's materials, in alphabetical order. A scene may use them without saying
+/// what they are (docs/materials.md).
+[[nodiscard]] std::vector<std::string> library_materials();
 
 /// What two materials do to each other, in place of what their own numbers would give.
 struct ScenePair {

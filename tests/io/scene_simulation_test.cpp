@@ -751,7 +751,8 @@ TEST_SUITE("io/scene_simulation") {
     scene.expect.push_back({.of = "rope", .point = hooke::ScenePoint{}, .at_step = 601});
     const auto simulation = hooke::Simulation::create(scene);
     REQUIRE(simulation.errors.size() == 3);
-    CHECK(hooke::to_line(simulation.errors[0]) == "ropes[0].material: there is no material 'nothing'");
+    CHECK(hooke::to_line(simulation.errors[0])
+              .starts_with("ropes[0].material: there is no material 'nothing'; the library has brass, clay"));
     CHECK(hooke::to_line(simulation.errors[1]) == "cloths[0].mesh: there is no mesh 'nowhere'");
     CHECK(hooke::to_line(simulation.errors[2]) ==
           "expect[0].at_step: 601 is after the end of the scene, step 600");

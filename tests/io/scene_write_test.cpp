@@ -70,7 +70,11 @@ constexpr const char* kEverything = R"({
                         "connection_points": {"tip": 2, "middle": [0.25, 0.25, 0]}}},
   "materials": {"silk": {"color": [0.1, 0.2, 0.3], "texture": "t.png", "shininess": 3, "opacity": 0.5,
                          "friction": 0.9, "static_friction": 1, "restitution": 0.25, "rolling_friction": 0.001,
-                         "spinning_friction": 0.002}, "plain": {}},
+                         "spinning_friction": 0.002}, "plain": {},
+                "unused": {"like": "cotton", "color": [0.5, 0.25, 0.125], "metalness": 0.5, "roughness": 0.25,
+                           "transmission": 0.125, "sheen": 0.75, "thread_pitch": 0.001, "hair": true, "density": 900,
+                           "young_modulus": 5000, "poisson_ratio": 0.25, "areal_density": 0.3,
+                           "linear_density": 0.05, "diameter": 0.02, "strength": 100}},
   "material_pairs": [{"a": "silk", "b": "plain", "friction": 0.3, "static_friction": 0.4, "restitution": 0.75}],
   "bodies": [
     {"name": "ground", "material": "silk", "shape": {"half_space": {}}, "friction": 0.25, "visual": "file",

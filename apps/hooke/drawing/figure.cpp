@@ -24,7 +24,6 @@ constexpr float kIronDensity = 7800;   ///< [kg/m^3]
 constexpr float kHookRadius = 0.008F;  ///< Radius of the line that shows a distance hook [m].
 const render::Color kIron = {0.56F, 0.57F, 0.58F};
 const render::Surface kIronSurface = {render::Shading::kSolid, 1, 0.5F, 0, 0, 0};
-constexpr float kClothSheen = 0.35F;
 
 float srgb_of(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
@@ -52,8 +51,26 @@ render::Color usual_color(SceneObject::Kind kind) {
   }
 }
 
+/// Returns the roughness whose highlight is as wide as that of Blinn and Phong's exponent (Walter and others,
+/// 2007).
+float roughness_of(float shininess) {
+  return std::pow(2 / (shininess + 2), 0.25F);
+}
+
+float shininess_of(float roughness) {
+  const float squared = std::max(roughness * roughness, 1e-3F);
+  return std::clamp(2 / (squared * squared) - 2, 1.0F, 1000.0F);
+}
+
 Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoader& textures) {
-  Finish finish = {color_of(look.color), nullptr, look.opacity, look.shininess};
+  Finish finish = {.color = color_of(look.color), .opacity = look.opacity, .shininess = look.shininess};
+  finish.metalness = look.metalness;
+  finish.roughness = look.roughness ? static_cast<float>(*look.roughness) : roughness_of(look.shininess);
+  if (look.roughness) finish.shininess = shininess_of(finish.roughness);
+  finish.transmission = look.transmission;
+  finish.sheen = look.sheen;
+  finish.thread_pitch = static_cast<float>(look.thread_pitch.value_or(Real(0)));
+  finish.hair = look.hair;
   if (look.texture.empty()) return finish;
   finish.texture =
       textures((std::filesystem::path(scene.path).parent_path() / look.texture).string(), nullptr);
@@ -66,7 +83,10 @@ std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& 
   std::vector<PaintedRange> ranges;
   for (const ModelPart& part : model.parts) {
     const ModelMaterial& material = model.materials[part.material];
-    Finish finish = {color_of(material.color), nullptr, material.opacity, material.shininess};
+    Finish finish = {.color = color_of(material.color),
+                     .opacity = material.opacity,
+                     .shininess = material.shininess,
+                     .roughness = roughness_of(material.shininess)};
     if (!material.texture.empty()) finish.texture = textures(material.texture, material.image);
     if (part.count > 0) ranges.push_back({part.first, part.count, finish});
   }
@@ -171,6 +191,7 @@ void prepare_points(const Simulation& simulation, const SceneObject& object, Fig
     add_loads(objects.ropes[row].loads, simulation.world().positions(object.rope).size(), figure);
   }
   if (object.kind == SceneObject::Kind::kCloth && row < objects.cloths.size()) {
+    if (object.model == nullptr) figure.width = static_cast<float>(objects.cloths[row].desc.width);
     add_loads(objects.cloths[row].loads, simulation.world().positions(object.cloth).size(), figure);
   }
   if (object.kind == SceneObject::Kind::kParticles && row < objects.particles.size()) {
@@ -182,18 +203,13 @@ void prepare_points(const Simulation& simulation, const SceneObject& object, Fig
   }
 }
 
-/// Returns the roughness whose highlight is as wide as that of Blinn and Phong's exponent (Walter and others,
-/// 2007).
-float roughness_of(float shininess) {
-  return std::pow(2 / (shininess + 2), 0.25F);
-}
-
 render::Surface surface_of(const Finish& finish, render::Shading shading) {
+  const bool is_cloth = shading == render::Shading::kCloth;
   return {.shading = shading,
-          .metalness = 0,
-          .roughness = roughness_of(finish.shininess),
-          .sheen = shading == render::Shading::kCloth ? kClothSheen : 0,
-          .transmission = 0,
+          .metalness = finish.metalness,
+          .roughness = finish.roughness,
+          .sheen = is_cloth ? finish.sheen : 0,
+          .transmission = finish.transmission,
           .threads = 0};
 }
 
@@ -251,6 +267,8 @@ void add_cloth(Figure& figure, const FigurePlace& place, render::DrawList& list)
   for (const PaintedRange& range : figure.ranges) {
     render::DrawMesh mesh = painted(range, is_cloth ? render::Shading::kCloth : render::Shading::kSolid);
     mesh.geometry = figure.surface->geometry;
+    if (is_cloth && range.finish.thread_pitch > 0)
+      mesh.surface.threads = figure.width / range.finish.thread_pitch;
     mesh.transform = affine(Mat3{}, Vec3{});
     mesh.two_sided = true;
     list.meshes.push_back(std::move(mesh));
@@ -273,7 +291,7 @@ void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& 
           {{points + static_cast<std::ptrdiff_t>(first), points + static_cast<std::ptrdiff_t>(end)},
            radius,
            finish.color,
-           surface_of(finish, render::Shading::kRope)});
+           surface_of(finish, finish.hair ? render::Shading::kHair : render::Shading::kRope)});
     }
     first = end;
   };
@@ -309,7 +327,9 @@ void add_particles(const Figure& figure, const FigurePlace& place, render::DrawL
   add_springs(figure, place, list);
   const std::size_t count = std::min(place.points.size(), figure.radii.size());
   for (std::size_t i = 0; i < count; ++i) {
-    list.spheres.push_back({place.points[i], figure.radii[i], figure.ranges.front().finish.color});
+    const Finish& finish = figure.ranges.front().finish;
+    list.spheres.push_back(
+        {place.points[i], figure.radii[i], finish.color, surface_of(finish, render::Shading::kSolid)});
   }
 }
 

@@ -23,6 +23,12 @@ struct Finish {
   std::shared_ptr<const render::Image> texture = {};
   float opacity = 1;
   float shininess = 16;
+  float metalness = 0;
+  float roughness = 0.6F;
+  float transmission = 0;
+  float sheen = 0.35F;
+  float thread_pitch = 0;  ///< [m]; 0 shows no threads.
+  bool hair = false;       ///< Whether ropes are tufts of hair.
 };
 
 /// These are consecutive triangles with one finish.
@@ -55,6 +61,7 @@ struct Figure {
   std::vector<PaintedRange> ranges;     ///< Set for all but bodies; at least one.
   std::vector<FigureSolid> solids;      ///< Set for a body.
   bool half_space = false;              ///< Whether the body is a half-space.
+  float width = 0;                      ///< Width of a grid of cloth [m].
   std::optional<ClothSurface> surface;  ///< Set for a cloth or solid.
   std::vector<float> radii;             ///< Radii of particles [m].
   std::vector<SpringDesc> springs;      ///< Springs of particles.

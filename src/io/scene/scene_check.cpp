@@ -1,5 +1,6 @@
 #include "io/scene/scene_check.h"
 
+#include "io/scene/material_library.h"
 #include "io/scene/scene_event.h"
 #include "io/scene/scene_source.h"
 
@@ -224,7 +225,13 @@ void Checker::collect_hooks(const SceneObjects& objects, const std::string& pref
 }
 
 void Checker::collect_names() {
-  for (const SceneMaterial& material : scene_.materials) materials_.insert(material.name);
+  for (const SceneMaterial& material : scene_.materials) {
+    materials_.insert(material.name);
+    if (material.like.empty() || is_in_library(material.like) || full()) continue;
+    fail(
+        "materials." + material.name + ".like", ErrorCode::kOutOfRange,
+        "there is no material " + in_quotes(material.like) + " in the library" + library_hint(material.like));
+  }
   for (const SceneMesh& mesh : scene_.meshes) meshes_.insert(mesh.name);
   names_damaged_ = std::any_of(errors_.begin(), errors_.end(),
                                [](const JsonError& one) { return one.error.where.ends_with(".name"); });
@@ -240,8 +247,9 @@ void Checker::check_tag(const SceneTag& tag, const std::string& path) {
 
 void Checker::check_material(const std::string& name, const std::string& path) {
   if (name.empty() || materials_.contains(name) || full()) return;
+  const std::string near = closest_name(scene_.materials, name);
   fail(path, ErrorCode::kOutOfRange,
-       "there is no material " + in_quotes(name) + closest_name(scene_.materials, name));
+       "there is no material " + in_quotes(name) + (near.empty() ? library_hint(name) : near));
 }
 
 void Checker::check_mesh_name(const std::string& name, const std::string& path) {

@@ -1,6 +1,7 @@
 #include "hooke/scene_io.h"
 
 #include "base/float_environment.h"
+#include "io/scene/material_library.h"
 #include "io/scene/scene_check.h"
 #include "io/scene/scene_ignored.h"
 #include "io/scene/scene_source.h"
@@ -88,6 +89,7 @@ Loaded<Scene> read_scene(std::string text, std::string name, bool files_must_exi
   Scene scene;
   scene.path = std::move(name);
   if (parsed && check_version(document, errors)) {
+    take_from_library(document.root);
     Reader reader(document, errors);
     read_object(reader, document.root, kind_of<Scene>(), &scene);
     check_scene(scene, document, files_must_exist, errors, ignored);
