@@ -24,8 +24,7 @@ struct NamedObject {
   std::optional<HookKind> hook = {};
 };
 
-/// A Subject is what a quantity is measured on.
-/// Hooks and ropes twist, hooks and the world have gaps, and these, ropes, cloths and solids break.
+/// What a quantity is measured on. Hooks and ropes twist, hooks and the world have gaps, and much breaks.
 enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kTwists, kGaps, kBreaks };
 
 /// Whether objects of a kind may snap, tear or be cut.
