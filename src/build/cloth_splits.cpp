@@ -274,6 +274,8 @@ void split_cloth(std::uint32_t object, const ElementMesh<3>& mesh, std::span<con
   split_bends(object, triangles, t);
   append_split_particles(object, splits, t);
   Deformable& cloth = t.objects[object];
+  const auto first_added = cloth.particles.end() - static_cast<std::uint32_t>(splits.size());
+  if (cloth.surface.self_contact) draw_apart(triangles.after(), mesh, splits, first_added, t);
   own_edges(cloth, mesh, triangles.after(), splits, t);
   part_hooks(object, mesh, triangles.after(), t);
   part_places(mesh, triangles.after(), indices_of(t, cloth), t, cloth);

@@ -230,6 +230,8 @@ void part_solid(std::uint32_t object, const ElementMesh<4>& mesh, std::span<cons
   if (splits.empty()) return;
   append_split_particles(object, splits, t);
   Deformable& solid = t.objects[object];
+  const auto first_added = solid.particles.end() - static_cast<std::uint32_t>(splits.size());
+  if (solid.surface.self_contact) draw_apart<4>(after, mesh, splits, first_added, t);
   const std::vector<std::uint32_t> index = indices_of(t, solid);
   part_hooks<4>(object, mesh, after, t);
   part_places<4>(mesh, after, index, t, solid);
