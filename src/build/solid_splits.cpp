@@ -175,6 +175,17 @@ class SplitSkin {
     return weights;
   }
 
+  /// The rows that added ones split from.
+  [[nodiscard]] std::map<std::uint32_t, std::uint32_t> rows_before() const {
+    std::map<std::uint32_t, std::uint32_t> before;
+    for (std::size_t e = 0; e < after_.size(); ++e) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (after_[e][k] != mesh_.corners[e][k]) before[after_[e][k]] = mesh_.corners[e][k];
+      }
+    }
+    return before;
+  }
+
   /// Appends the faces that were inside and are outside now.
   void append_open_faces() {
     std::set<Triangle> was_outside;
@@ -182,12 +193,7 @@ class SplitSkin {
       std::sort(face.begin(), face.end());
       was_outside.insert(face);
     }
-    std::map<std::uint32_t, std::uint32_t> before;  // From added rows to those that they split from.
-    for (std::size_t e = 0; e < after_.size(); ++e) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        if (after_[e][k] != mesh_.corners[e][k]) before[after_[e][k]] = mesh_.corners[e][k];
-      }
-    }
+    const std::map<std::uint32_t, std::uint32_t> before = rows_before();
     std::map<std::uint32_t, std::uint32_t> vertex;  // Those at points, by row.
     for (std::uint32_t v = 0; v < skin_.vertices.size(); ++v) {
       if (is_point(skin_.vertices[v])) vertex.try_emplace(row_of(skin_.vertices[v].points[0]), v);
