@@ -510,7 +510,7 @@ def hair_wind():
         n = [r * math.cos(angle), y, r * math.sin(angle)]
         root = add([0, top, 0], scaled(head, n))
         ropes.append(
-            rope(f"hair_{k}", "hemp" if k % 3 else "oak", [add(root, scaled((i - 1) * pitch, n)) for i in range(segments + 2)],
+            rope(f"hair_{k}", "brown_hair" if k % 3 else "dark_hair", [add(root, scaled((i - 1) * pitch, n)) for i in range(segments + 2)],
                  0.0004, radius, pins=[], bend_stiffness=2e-6, bend_damping=0.02, repulsion_strength=1.5e-7,
                  repulsion_range=0.02))
         hooks += [tie(f"root_{k}{i}", "head", f"hair_{k}", b_point=i) for i in (0, 1)]
@@ -519,9 +519,9 @@ def hair_wind():
         "Sixty hairs of 30 cm, rods with EI = 2e-6 N m^2, stand clamped on a head that moves to and fro. They fall, "
         "swing after it and, after four seconds, blow to one side. Nearer than 2 cm they push each other away. A ball "
         "falls beside them.",
-        8, [0.55, 1.35, 1.15], [0, 1.1, 0], {"ground": {}, "sand": {}, "oak": {}, "hemp": {}, "clay": {}, "slate": {}}, [
+        8, [0.42, 1.25, 0.8], [0, 1.12, 0], {"ground": {}, "skin": {}, "dark_hair": {}, "brown_hair": {}, "clay": {}, "slate": {}}, [
             ground(),
-            body("head", "sand", {"sphere": {"radius": head}}, [0, top, 0], "kinematic",
+            body("head", "skin", {"sphere": {"radius": head}}, [0, top, 0], "kinematic",
                  motion={"sine": {"amplitude": [0.06, 0, 0], "frequency_hz": 0.8}}),
             body("ball", "clay", {"sphere": {"radius": 0.04}}, [0.5, 1.2, 0.3]),
         ], [

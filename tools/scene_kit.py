@@ -8,23 +8,26 @@ G = 9.81
 DT = 1 / 60
 
 PALETTE = {  # linear
-    "ground": {"color": [0.13, 0.16, 0.14], "shininess": 4},
+    "ground": {"color": [0.30, 0.29, 0.27], "shininess": 4},
     "crate": {"color": [1, 1, 1], "texture": "models/crate.png", "shininess": 10},
     "oak": {"color": [0.30, 0.18, 0.09], "shininess": 20},
     "sand": {"color": [0.52, 0.41, 0.26], "shininess": 8},
     "clay": {"color": [0.42, 0.17, 0.10], "shininess": 10},
     "moss": {"color": [0.16, 0.24, 0.12], "shininess": 10},
     "slate": {"color": [0.10, 0.16, 0.25], "shininess": 30},
-    "ivory": {"color": [0.72, 0.67, 0.55], "shininess": 60},
-    "steel": {"color": [0.62, 0.64, 0.68], "shininess": 100},
+    "ivory": {"color": [0.72, 0.67, 0.55], "roughness": 0.3},
+    "steel": {"color": [0.56, 0.57, 0.58], "metalness": 1, "roughness": 0.3},
     "rose": {"color": [0.60, 0.10, 0.14], "shininess": 90},
-    "felt": {"color": [0.50, 0.62, 0.06], "shininess": 4},
-    "silk": {"color": [0.62, 0.10, 0.20], "shininess": 80},
+    "felt": {"color": [0.50, 0.62, 0.06], "roughness": 1, "sheen": 0.7},
+    "silk": {"color": [0.62, 0.10, 0.20], "roughness": 0.4, "sheen": 0.5},
     "rubber": {"color": [0.03, 0.04, 0.06], "shininess": 60},
     "trampoline": {"color": [0.05, 0.09, 0.30], "shininess": 20},
-    "cable": {"color": [0.10, 0.10, 0.11], "shininess": 60},
+    "cable": {"color": [0.30, 0.30, 0.31], "metalness": 1, "roughness": 0.45},
+    "dark_hair": {"color": [0.09, 0.04, 0.018], "roughness": 0.4, "hair": True},
+    "brown_hair": {"color": [0.15, 0.07, 0.03], "roughness": 0.4, "hair": True},
+    "skin": {"color": [0.62, 0.40, 0.30], "roughness": 0.6},
     "hemp": {"color": [0.45, 0.33, 0.18], "shininess": 4},
-    "glass": {"color": [0.62, 0.72, 0.78], "shininess": 200, "opacity": 0.25},
+    "glass": {"color": [0.62, 0.72, 0.78], "roughness": 0.04, "transmission": 0.9},
 }
 TONES = ["sand", "clay", "moss", "slate"]  # of many like things
 

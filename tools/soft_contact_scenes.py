@@ -88,16 +88,16 @@ def hair_on_shoulders():
         n = [r * math.cos(angle), y, r * math.sin(angle)]
         root = add([0, top, 0], scaled(head, n))
         points = [add(root, scaled((i - 1) * 0.025, n)) for i in range(18)]
-        ropes.append(rope(f"hair_{k}", "hemp" if k % 3 else "oak", points, 0.0006, 0.001, pins=[0, 1], bend_stiffness=1e-6,
+        ropes.append(rope(f"hair_{k}", "brown_hair" if k % 3 else "dark_hair", points, 0.0006, 0.001, pins=[0, 1], bend_stiffness=1e-6,
                           bend_damping=0.02, air_friction=0.0005, repulsion_strength=1e-7, repulsion_range=0.015))
     cape = sheet("cape", "rose", [-0.42, 1.47, -0.42], 0.84, 29, areal_density=0.25, damping=1)
     return scene(
         "Hair on shoulders",
         "Sixty hairs of 42 cm fall on a cape that lies on shoulders, and rest on it. Hair pushes hair away, but touches "
         "the cape strand by strand.",
-        4, [0.7, 1.7, 1.2], [0, 1.4, 0], {"ground": {}, "sand": {}, "slate": {}, "hemp": {}, "oak": {}, "rose": {"friction": 0.6}}, [
+        4, [0.7, 1.7, 1.2], [0, 1.4, 0], {"ground": {}, "skin": {}, "slate": {}, "brown_hair": {}, "dark_hair": {}, "rose": {"friction": 0.6}}, [
             ground(),
-            body("head", "sand", {"sphere": {"radius": head}}, [0, top, 0], "static"),
+            body("head", "skin", {"sphere": {"radius": head}}, [0, top, 0], "static"),
             body("shoulders", "slate", {"capsule": {"radius": 0.09, "half_height": 0.16}}, [0, 1.34, 0], "static",
                  rotation=[0, 0, math.sin(math.pi / 4), math.cos(math.pi / 4)]),
             body("trunk", "slate", {"cylinder": {"radius": 0.13, "half_height": 0.65}}, [0, 0.65, 0], "static"),

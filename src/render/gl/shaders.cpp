@@ -88,10 +88,13 @@ void main() {
   vec3 inner = albedo.rgb * (1.0 - finish.x) * light.inner * (1.0 - glass);
   // Light that entered elsewhere leaves jelly all over its surface, more so where it is thin.
   inner += glass * (0.15 + 0.35 * away) * albedo.rgb * albedo.rgb * sky_irradiance(-v);
-  vec3 color = with_haze(inner + light.outer, distance(eye.xyz, point));
-  result = vec4(shown(color) * albedo.a, 1.0);
+  vec3 color = tone_mapped(with_haze(inner + light.outer, distance(eye.xyz, point)));
   vec3 stain = mix(vec3(1.0), albedo.rgb, 0.45 + 0.55 * away);
-  passed = vec4(mix(vec3(1.0), glass * (1.0 - mirrors) * stain, albedo.a), 0.0);
+  vec3 share = mix(vec3(1.0), glass * (1.0 - mirrors) * stain, albedo.a);
+  // The picture holds encoded colors. A product stays one, nearly; a sum is right for a gray of a quarter behind.
+  vec3 behind = 0.25 * share;
+  result = vec4(encoded(albedo.a * color + behind) - encoded(behind), 1.0);
+  passed = vec4(encoded(share), 0.0);
 }
 )";
 
