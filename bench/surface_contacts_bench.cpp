@@ -105,7 +105,7 @@ struct Scene {
 /// Largest of what steps report, and their times in ascending order [ms].
 struct Figures {
   std::vector<double> times;
-  std::uint32_t contacts = 0, held_back = 0;
+  std::uint32_t contacts = 0, pairs = 0, held_back = 0;
   double searches = 0;
 
   /// The time that `share` of the steps stay under [ms].
@@ -127,6 +127,7 @@ Figures measure(World& world, int workers, int frames) {
     const double passed_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     figures.times.push_back(workers == 1 ? taken_ms : passed_ms);
     figures.contacts = std::max(figures.contacts, report.contacts);
+    figures.pairs = std::max(figures.pairs, report.surface_pairs);
     figures.held_back += report.points_held_back;
     figures.searches += static_cast<double>(report.surface_searches) / frames;
   }
@@ -147,8 +148,8 @@ int main(int argc, char** argv) {
   constexpr Scene kScenes[] = {
       {"lying", lying}, {"sliding", sliding}, {"falling on a ball", falling}, {"folding", folding}};
   std::printf("%d workers, %d frames; times in ms\n", workers, frames);
-  std::printf("%-18s %8s %9s %9s %8s %8s %8s %13s %9s %17s\n", "scene", "points", "contacts", "searches",
-              "median", "95 %", "worst", "worst/median", "held back", "state");
+  std::printf("%-18s %8s %9s %9s %9s %8s %8s %8s %13s %9s %17s\n", "scene", "points", "contacts", "pairs",
+              "searches", "median", "95 %", "worst", "worst/median", "held back", "state");
   const std::string only = argc > 4 ? argv[4] : "";
   for (const Scene& scene : kScenes) {
     for (const int n : {25, 50, 100}) {
@@ -156,9 +157,9 @@ int main(int argc, char** argv) {
       if (kLayers * n * n > largest) continue;
       World world = scene.make(n, workers);
       const Figures f = measure(world, workers, frames);
-      std::printf("%-18s %8d %9u %9.2f %8.2f %8.2f %8.2f %13.2f %9u %17" PRIx64 "\n", scene.name,
-                  kLayers * n * n, f.contacts, f.searches, f.time_of(0.5), f.time_of(0.95), f.times.back(),
-                  f.times.back() / f.time_of(0.5), f.held_back, world.state_hash());
+      std::printf("%-18s %8d %9u %9u %9.2f %8.2f %8.2f %8.2f %13.2f %9u %17" PRIx64 "\n", scene.name,
+                  kLayers * n * n, f.contacts, f.pairs, f.searches, f.time_of(0.5), f.time_of(0.95),
+                  f.times.back(), f.times.back() / f.time_of(0.5), f.held_back, world.state_hash());
       std::fflush(stdout);
     }
   }

@@ -158,8 +158,10 @@ struct StepReport {
   /// crossing until they are apart.
   std::uint32_t surfaces_touching = 0;
   std::uint32_t surface_searches = 0;  ///< How often contacts of surfaces were found anew, over all groups.
-  RouteCounts routes = {};             ///< How many contacts, hooks and ropes were solved in which way.
-  double detect_ms = 0;                ///< Time to find who is near whom, and where they touch [ms].
+  /// Pairs of vertices and faces or of edges that might have met after contacts of surfaces were found last.
+  std::uint32_t surface_pairs = 0;
+  RouteCounts routes = {};  ///< How many contacts, hooks and ropes were solved in which way.
+  double detect_ms = 0;     ///< Time to find who is near whom, and where they touch [ms].
   double prepare_ms = 0;  ///< Time to choose how contacts and hooks are solved, and to make their rows [ms].
   double substep_ms = 0;  ///< Time of all substeps: forces, impacts, corrections, motion [ms].
   double finish_ms = 0;   ///< Time to quarantine, to break hooks, to put to sleep and to gather events [ms].

@@ -21,6 +21,7 @@ void count_refused(WorldData& world, StepReport& report) {
     report.points_held_back += group.counts.held_back;
     report.surfaces_touching += group.counts.uncertain;
     report.surface_searches += group.counts.searches;
+    report.surface_pairs += group.counts.pairs;
   });
   report.points_held_back += std::exchange(world.frame.passes_held_back, 0);
   report.surfaces_touching += std::exchange(world.frame.passes_left, 0);

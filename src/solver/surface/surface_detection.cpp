@@ -199,6 +199,13 @@ class BoxFitter {
   Real reach_;
 };
 
+/// All blocks but the last one are full.
+std::uint32_t count_pairs(const std::vector<SurfacePairBlock>& blocks) {
+  if (blocks.empty()) return 0;
+  return static_cast<std::uint32_t>((blocks.size() - 1) * kLanes) +
+         static_cast<std::uint32_t>(blocks.back().count);
+}
+
 /// Makes rows and pairs of what was found.
 class RowMaker {
  public:
@@ -424,7 +431,7 @@ class RowMaker {
 
 }  // namespace
 
-bool clip_to_cage(const SurfaceCage& cage, Vec3& displacement) {
+bool clip_out_of_start(const SurfaceCage& cage, Vec3& displacement) {
   const Real squared = length_squared(cage.drift);
   const Real share =
       squared > Real(0) ? std::clamp(dot(displacement, cage.drift) / squared, Real(0), Real(1)) : Real(0);
@@ -481,11 +488,17 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
     return found.size() == kMostFound;
   });
   if (group.overflows) return;
+  // There is room at once for as many pairs as can be, since blocks that are not written cost nothing.
+  std::size_t count = 0;
+  for (const std::vector<SurfaceFound>& found : pairs) count += found.size();
+  group.face_pairs.reserve(count / kLanes + 1);
+  group.edge_pairs.reserve(count / kLanes + 1);
   // Rows go into blocks in the order of pairs, whoever found them.
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
     for (const SurfaceFound& found : group.found[i]) maker.take(found);
   }
   maker.finish();
+  group.counts.pairs = count_pairs(group.face_pairs) + count_pairs(group.edge_pairs);
 }
 
 }  // namespace hooke::solver

@@ -12,9 +12,17 @@ namespace hooke::solver {
 void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables, Real h,
                          SurfaceContacts& contacts, SurfaceGroup& group);
 
+/// What clip_to_cage does where the vertex has gone farther than its room.
+bool clip_out_of_start(const SurfaceCage& cage, Vec3& displacement);
+
 /// Clips the displacement of a vertex to its cage: where it is, relative to where contacts were found and to
 /// the motion of the group. Returns whether it was outside.
-bool clip_to_cage(const SurfaceCage& cage, Vec3& displacement);
+inline bool clip_to_cage(const SurfaceCage& cage, Vec3& displacement) {
+  // Most vertices have gone less than their room, which is certain without a division and a root.
+  constexpr Real kCertain = Real(0.999);
+  if (length_squared(displacement) < kCertain * cage.room * cage.room) return false;
+  return clip_out_of_start(cage, displacement);
+}
 
 /// Mean velocity of the vertices of a group, of which `velocity_of(vertex)` is each; zero where one is held.
 template <class VelocityOf>

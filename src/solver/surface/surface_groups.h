@@ -15,6 +15,7 @@ namespace hooke::solver {
 struct SurfaceCounts {
   std::uint32_t searches = 0;   ///< How often contacts were found.
   std::uint32_t held_back = 0;  ///< Vertices that were held back, in all substeps.
+  std::uint32_t pairs = 0;      ///< Pairs that cages did not keep apart when contacts were found last.
   std::uint32_t uncertain = 0;  ///< Pairs that touched or crossed when they were found.
 };
 

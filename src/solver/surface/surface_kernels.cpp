@@ -31,13 +31,13 @@ void search_surfaces_here(const SurfaceSearch& search, std::vector<SurfaceFound>
 #endif
 }
 
-bool measure_pairs_here(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
+bool measure_pairs_here(std::span<SurfacePairBlock> blocks, bool edges, Real certain,
                         const state::PositionRecord* position) {
 #if HWY_TARGET == HWY_SCALAR
-  return measure_pairs_scalar(blocks, edges, slack, position);
+  return measure_pairs_scalar(blocks, edges, certain, position);
 #else
-  return edges ? measure_pair_blocks<Wide, 2>(blocks, slack, position)
-               : measure_pair_blocks<Wide, 1>(blocks, slack, position);
+  return edges ? measure_pair_blocks<Wide, 2>(blocks, certain, position)
+               : measure_pair_blocks<Wide, 1>(blocks, certain, position);
 #endif
 }
 
@@ -74,10 +74,10 @@ void search_surfaces(const SurfaceSearch& search, std::vector<SurfaceFound>& fou
   HWY_DYNAMIC_DISPATCH(search_surfaces_here)(search, found);
 }
 
-bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
+bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real certain,
                    const state::PositionRecord* position) {
-  if (is_scalar()) return measure_pairs_scalar(blocks, edges, slack, position);
-  return HWY_DYNAMIC_DISPATCH(measure_pairs_here)(blocks, edges, slack, position);
+  if (is_scalar()) return measure_pairs_scalar(blocks, edges, certain, position);
+  return HWY_DYNAMIC_DISPATCH(measure_pairs_here)(blocks, edges, certain, position);
 }
 
 void prepare_surface_rows(std::span<SurfaceRowBlock> blocks, Real h, const state::PositionRecord* position,
@@ -102,9 +102,9 @@ void search_surfaces(const SurfaceSearch& search, std::vector<SurfaceFound>& fou
   search_surfaces_scalar(search, found);
 }
 
-bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
+bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real certain,
                    const state::PositionRecord* position) {
-  return measure_pairs_scalar(blocks, edges, slack, position);
+  return measure_pairs_scalar(blocks, edges, certain, position);
 }
 
 void prepare_surface_rows(std::span<SurfaceRowBlock> blocks, Real h, const state::PositionRecord* position,

@@ -17,10 +17,11 @@ void search_surfaces(const SurfaceSearch& search, std::vector<SurfaceFound>& fou
 void search_surfaces_scalar(const SurfaceSearch& search, std::vector<SurfaceFound>& found);
 
 /// Writes to `now` how far apart pairs are along their normals, from the nearest vertices of both sides.
-/// Returns whether one is nearer than least plus `slack` [m].
-bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
+/// Returns whether one is nearer than least. If `certain` [m] is positive, least is made first of what `now`
+/// was: at least `certain`, else `most` or 90 % of it.
+bool measure_pairs(std::span<SurfacePairBlock> blocks, bool edges, Real certain,
                    const state::PositionRecord* position);
-bool measure_pairs_scalar(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
+bool measure_pairs_scalar(std::span<SurfacePairBlock> blocks, bool edges, Real certain,
                           const state::PositionRecord* position);
 
 /// Sets what rows ask for in a substep of `h` [s] from where vertices are when it begins; see

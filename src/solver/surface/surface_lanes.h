@@ -326,12 +326,13 @@ class SurfaceSearcher {
     write(nearest.normal.z, lane[4]);
     for (int k = 0; k < 4; ++k) write(nearest.weight[k], lane[5 + k]);
     const std::uint32_t count = std::min<std::uint32_t>(kLanesOf<Number>, batch.count - i);
+    SurfaceFound all[kLanes];
+    std::size_t size = 0;
     for (std::uint32_t j = 0; j < count; ++j) {
       if (!(lane[0][j] > Real(0))) continue;
       if (lane[0][j] == Real(SurfaceFound::kNear) && is_left_to_others<kFirstSide>(batch, i + j, lane, j))
         continue;
-      if (found_.size() == kMostFound) return;
-      SurfaceFound& found = found_.emplace_back();
+      SurfaceFound& found = all[size++];
       for (std::size_t k = 0; k < 4; ++k) {
         found.vertex[k] = batch.record[k][i + j] / 4;
         found.weight[k] = lane[5 + k][j];
@@ -346,6 +347,8 @@ class SurfaceSearcher {
       found.second_mesh = turned ? s_.number_a : s_.number_b;
       found.is_edges = kFirstSide == 2;
     }
+    size = std::min(size, kMostFound - found_.size());
+    found_.insert(found_.end(), all, all + size);
   }
 
   const SurfaceSearch& s_;
@@ -373,16 +376,19 @@ HWY_INLINE Number distance_now(const SurfacePairBlock& block, int lane, const Re
 }
 
 template <class Number, int kFirstSide>
-HWY_INLINE bool measure_pair_blocks(std::span<SurfacePairBlock> blocks, Real slack,
+HWY_INLINE bool measure_pair_blocks(std::span<SurfacePairBlock> blocks, Real certain,
                                     const state::PositionRecord* positions) {
   const auto* position = reinterpret_cast<const Real*>(positions);
   bool any_near = false;
   for (SurfacePairBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kLanesOf<Number>) {
+      if (certain > Real(0)) {
+        const Number kept = Number(kKeptOfGap) * get<Number>(block.now + lane);
+        write(larger(Number(certain), smaller(kept, get<Number>(block.most + lane))), block.least + lane);
+      }
       const Number now = distance_now<Number, kFirstSide>(block, lane, position);
       write(now, block.now + lane);
-      const Number least = get<Number>(block.least + lane) + Number(slack);
-      any_near = any(above(least, now)) || any_near;
+      any_near = any(above(get<Number>(block.least + lane), now)) || any_near;
     }
   }
   return any_near;

@@ -9,10 +9,10 @@ void search_surfaces_scalar(const SurfaceSearch& search, std::vector<SurfaceFoun
   HWY_NAMESPACE::SurfaceSearcher<Real>(search, found).run();
 }
 
-bool measure_pairs_scalar(std::span<SurfacePairBlock> blocks, bool edges, Real slack,
+bool measure_pairs_scalar(std::span<SurfacePairBlock> blocks, bool edges, Real certain,
                           const state::PositionRecord* position) {
-  return edges ? HWY_NAMESPACE::measure_pair_blocks<Real, 2>(blocks, slack, position)
-               : HWY_NAMESPACE::measure_pair_blocks<Real, 1>(blocks, slack, position);
+  return edges ? HWY_NAMESPACE::measure_pair_blocks<Real, 2>(blocks, certain, position)
+               : HWY_NAMESPACE::measure_pair_blocks<Real, 1>(blocks, certain, position);
 }
 
 void prepare_surface_rows_scalar(std::span<SurfaceRowBlock> blocks, Real h,

@@ -13,22 +13,16 @@ namespace hooke::solver {
 
 namespace {
 
-/// Sets how far apart pairs stay in this substep, from where they are.
-void set_least(SurfaceGroup& group) {
-  const Real certain = Real(3) * group.reserve;
-  for (auto* blocks : {&group.face_pairs, &group.edge_pairs}) {
-    for (SurfacePairBlock& block : *blocks) {
-      for (int lane = 0; lane < kLanes; ++lane)
-        block.least[lane] = std::max(certain, std::min(block.most[lane], kKeptOfGap * block.now[lane]));
-    }
-  }
+/// Measures how far apart pairs are. Returns whether one is nearer than it may be.
+bool measure_pairs(const SurfaceContacts& contacts, SurfaceGroup& group, Real certain = Real(0)) {
+  const bool faces = wide::measure_pairs(group.face_pairs, false, certain, contacts.position.data());
+  const bool edges = wide::measure_pairs(group.edge_pairs, true, certain, contacts.position.data());
+  return faces || edges;
 }
 
-/// Measures how far apart pairs are. Returns whether one is nearer than it may be, with `slack` [m].
-bool measure_pairs(Real slack, const SurfaceContacts& contacts, SurfaceGroup& group) {
-  const bool faces = wide::measure_pairs(group.face_pairs, false, slack, contacts.position.data());
-  const bool edges = wide::measure_pairs(group.edge_pairs, true, slack, contacts.position.data());
-  return faces || edges;
+/// Sets how far apart pairs stay in this substep, from where they were measured last, and measures them.
+bool measure_pairs_first(const SurfaceContacts& contacts, SurfaceGroup& group) {
+  return measure_pairs(contacts, group, Real(3) * group.reserve);
 }
 
 /// Moves the vertices of one group and looks at its pairs.
@@ -44,9 +38,8 @@ class Truncation {
   void run() {
     if (group_.overflows) return hold_all();
     clip_all();
-    set_least(group_);
     int rounds = 0;
-    while (measure(Real(0))) {
+    for (bool near = measure_pairs_first(c_, group_); near; near = measure_pairs(c_, group_)) {
       if (rounds == kCorrectionRounds) return hold_back();
       list_hot();
       while (rounds < kCorrectionRounds) {
@@ -79,8 +72,6 @@ class Truncation {
       move(vertex, clipped - displacement);
     });
   }
-
-  bool measure(Real slack) { return measure_pairs(slack, c_, group_); }
 
   struct Pair {
     SurfacePairBlock* block;
@@ -197,7 +188,7 @@ class Truncation {
                  const Pair pair = pair_at(number);
                  for (std::size_t k = 0; k < 4; ++k) any = stay(pair.vertex(k)) || any;
                });
-      measure(Real(0));
+      (void)measure_pairs(c_, group_);
     }
   }
 
@@ -267,12 +258,10 @@ bool pairs_would_meet(const state::Tables& tables, Real h, SurfaceContacts& cont
                                     time * tables.particles.velocity[particle].v;
     });
   };
-  set_least(group);
   place(h);
-  const bool meet = measure_pairs(Real(0), contacts, group);
-  if (meet) return true;
+  if (measure_pairs_first(contacts, group)) return true;
   place(Real(0));
-  (void)measure_pairs(Real(0), contacts, group);
+  (void)measure_pairs(contacts, group);
   return false;
 }
 
