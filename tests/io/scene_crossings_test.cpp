@@ -29,8 +29,8 @@ bool may_cross_itself(const Scene& scene, const SceneObject& object) {
   const std::size_t bracket = object.path.find('[');
   const auto index = static_cast<std::size_t>(std::stoul(object.path.substr(bracket + 1)));
   const std::string kind = object.path.substr(0, bracket);
-  if (kind == "cloths") return !scene.cloths[index].desc.self_contact;
-  if (kind == "solids") return !scene.solids[index].desc.self_contact;
+  if (kind == "cloths") return !scene.objects.cloths[index].desc.self_contact;
+  if (kind == "solids") return !scene.objects.solids[index].desc.self_contact;
   return false;
 }
 

@@ -352,7 +352,9 @@ TEST_SUITE("world/coupled_groups") {
     }
     CHECK(length(world.measure().momentum - before) < 1e-5 * length(before));
     CHECK(deepest < 0.005);
-    CHECK(world.positions(cloth)[144].z < world.center_of_mass(ball).z);
+    double front = 0;
+    for (std::size_t i = 0; i < 289; ++i) front = std::min(front, world.positions(cloth)[i].z);
+    CHECK(front < world.center_of_mass(ball).z - 0.1);
     CHECK(d(world.velocity(ball).z) > -2.5);
   }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -77,12 +78,13 @@ struct IsometricBend {
   Spring edge, wings;
   int color = 0;
   Real damping = Real(0);
+  Real damped_mass = std::numeric_limits<Real>::infinity();  ///< Of the springs of its object [kg].
   Real stiffest = Real(0);  ///< Of the elements of its object with the same key.
 
   /// What elements of one object that share a pass have in common.
   [[nodiscard]] auto key() const { return std::tie(color, edge.material, wings.material, damping); }
   [[nodiscard]] bool shares_pass(const IsometricBend& other) const {
-    return key() == other.key() && stiffest == other.stiffest;
+    return key() == other.key() && stiffest == other.stiffest && damped_mass == other.damped_mass;
   }
 };
 
@@ -122,16 +124,25 @@ std::vector<IsometricBend> list_isometric_bends(std::span<const state::Deformabl
   std::vector<Stencil> stencils;
   for (std::uint32_t object = 0; object < objects.size(); ++object) {
     const state::Rows rows = objects[object].bends;
+    // Shear of woven cloth is solved by itself: yarns come after it, and hooks on cells shook where they
+    // followed elements that hold both diagonals of a cell.
+    const bool is_woven = objects[object].columns > 0;
     for (std::uint32_t row = rows.first; row < rows.end(); ++row) {
       if (!bends.is_isometric(row) || taken.bends[row - first_bend] != 0) continue;
       const Stencil& s = bends.stencil[row];
-      const auto edge = by_ends.take(s.edge_a, s.edge_b, taken.springs);
-      const auto wings = by_ends.take(s.wing_a, s.wing_b, taken.springs);
+      std::optional<std::uint32_t> edge, wings;
+      if (!is_woven) {
+        edge = by_ends.take(s.edge_a, s.edge_b, taken.springs);
+        wings = by_ends.take(s.wing_a, s.wing_b, taken.springs);
+      }
       list.push_back({.bend = row,
                       .object = object,
                       .edge = load_spring(edge, springs, isometric_bends),
                       .wings = load_spring(wings, springs, isometric_bends),
-                      .damping = bends.damping[row]});
+                      .damping = bends.damping[row],
+                      .damped_mass = objects[object].springs.count > 0
+                                         ? springs.damped_mass[objects[object].springs.first]
+                                         : std::numeric_limits<Real>::infinity()});
       stencils.push_back(s);
     }
   }
@@ -184,6 +195,7 @@ void build_isometric_bend_blocks(std::span<const state::Deformable> objects, con
     IsometricBendPass pass{.edge = head.edge.material,
                            .wings = head.wings.material,
                            .damping = head.damping,
+                           .damped_mass = head.damped_mass,
                            .stiffest = head.stiffest,
                            .first = static_cast<int>(isometric_bends.blocks.size())};
     const auto more = [&] { return i < list.size() && list[i].shares_pass(head); };
@@ -206,8 +218,7 @@ void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {
   HOOKE_ASSERT(isometric_bends.stiffness.size() == isometric_bends.blocks.size());
   prepare_springs(isometric_bends.materials, h);
   for (IsometricBendPass& pass : isometric_bends.passes) {
-    const Real mass = isometric_bends.materials[pass.edge].damped_mass;  // all of one cloth
-    const Real most = most_damping(mass, pass.stiffest, h) / pass.stiffest;
+    const Real most = most_damping(pass.damped_mass, pass.stiffest, h) / pass.stiffest;
     const Real damped = Real(1) / (std::min(pass.damping, most) + h);
     pass.softness = {.bias = Real(1) / h, .damped_bias = damped, .gamma_share = h * damped};
   }

@@ -41,10 +41,11 @@ struct IsometricBendSoftness {
 /// Blocks [first, end) hold elements of one color: no two share a particle. Elements of several objects share
 /// a pass only if the pass would have the same figures for each of the objects alone.
 struct IsometricBendPass {
-  std::uint32_t edge = 0;   ///< Material of the springs along edges, or kNoSpring.
-  std::uint32_t wings = 0;  ///< Material of the springs between wings, or kNoSpring.
-  Real damping = Real(0);   ///< tau of the bends [s].
-  Real stiffest = Real(0);  ///< Largest k sum |weight|^2 of its rows [N/m].
+  std::uint32_t edge = 0;      ///< Material of the springs along edges, or kNoSpring.
+  std::uint32_t wings = 0;     ///< Material of the springs between wings, or kNoSpring.
+  Real damping = Real(0);      ///< tau of the bends [s].
+  Real damped_mass = Real(0);  ///< Largest mass that tau acts on, see solver/soft/spring_solve.h [kg].
+  Real stiffest = Real(0);     ///< Largest k sum |weight|^2 of its rows [N/m].
   int first = 0;
   int end = 0;
   int last_count = kLanes;  ///< Elements in the last block.
