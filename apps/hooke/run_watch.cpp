@@ -133,7 +133,9 @@ std::optional<RunWarning> softness(const Scene& scene, const SceneCloth& cloth) 
   const ClothDesc& desc = cloth.desc;
   const double cell = cell_of(cloth);
   const double rigidity = in_double(desc.bend_stiffness);
-  const bool has_bends = desc.bend != ClothDesc::Bend::kSpring && desc.bend != ClothDesc::Bend::kNone;
+  // Yarns are bent as a whole, with all of it.
+  const bool has_bends = desc.bend == ClothDesc::Bend::kAngle || desc.bend == ClothDesc::Bend::kIsometric ||
+                         (desc.bend == ClothDesc::Bend::kYarn && desc.yield_angle < kRigid);
   if (!(cell > 0) || !has_bends || !(rigidity > 0)) return std::nullopt;
   const double area = in_double(desc.width) * in_double(desc.height);
   const double density = desc.total_mass ? in_double(*desc.total_mass) / area : in_double(desc.areal_density);
@@ -331,7 +333,8 @@ void RunWatch::take_cloth(const Scene& scene, const World& world, const SceneClo
   }
   const double carried = carried_stiffness(scene, cloth, points.size(), area);
   watched.stiffness = in_double(desc.stretch_stiffness);
-  if (watched.stiffness > kSlackFrom * carried) watched.carried = carried;
+  // The yarns of a grid carry all of it.
+  if (!cloth.mesh.empty() && watched.stiffness > kSlackFrom * carried) watched.carried = carried;
   if (desc.extension_max != kRigid) watched.extension_max = in_double(desc.extension_max);
   if (watched.carried > 0 || watched.extension_max > 0)
     watched.edges = edges_of<Edge>(world, watched.object, cloth);

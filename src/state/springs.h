@@ -77,11 +77,9 @@ struct Bends {
   [[nodiscard]] int count() const { return static_cast<int>(stencil.size()); }
   /// An isometric bend never has a zero weight at a wing.
   [[nodiscard]] bool is_isometric(std::size_t row) const { return weights[row][2] != Real(0); }
-  /// Whether a row resists bending along a yarn, at edge_a between its wings. Such a row alone has the weight
-  /// zero at edge_b, a point beside edge_a.
-  [[nodiscard]] bool is_along_yarn(std::size_t row) const {
-    return is_isometric(row) && weights[row][1] == Real(0);
-  }
+  /// Whether a row resists bending along a yarn, at edge_a between its wings. Such a row alone has weights above
+  /// zero at its wings, and none at edge_b, a point beside edge_a.
+  [[nodiscard]] bool is_along_yarn(std::size_t row) const { return weights[row][2] > Real(0); }
   [[nodiscard]] std::array<double, 4> weights_of(std::size_t row) const {
     const auto& k = weights[row];
     return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2]),

@@ -337,24 +337,36 @@ class Warnings(Program):
         # A strip of 10 cells held at one edge.
         strip = {"name": "strip", "columns": 12, "rows": 3, "width": 0.55, "height": 0.1, "areal_density": 0.2,
                  "row_direction": [0, 0, 1], "bend_stiffness": 0.3, "pins": [{"column": 0}, {"column": 1}]}
+        self.assertEqual(self.problems({"cloths": [strip]}), {})
+        strip["bend"] = "angle"
         told = self.problems({"cloths": [strip]})["strip"]
         self.assertRegex(told["what"], "has hardly any of its bend_stiffness of 0.3 N m: a substep of 0.00208 s")
         self.assertEqual(self.problems({"cloths": [strip | {"bend_stiffness": 1e-4}]}), {})
         del strip["bend_stiffness"]
         self.assertEqual(self.problems({"cloths": [strip | {"bend": "none"}]}), {})
 
+    @staticmethod
+    def mesh_of_sheet(n):
+        """Returns a square of n x n points, which has no yarns as a grid has."""
+        quads = [r * n + c for r in range(n - 1) for c in range(n - 1)]
+        return {"vertices": [[c / (n - 1), 1 - r / (n - 1), 0] for r in range(n) for c in range(n)],
+                "triangles": [t for q in quads for t in ([q, q + n, q + 1], [q + 1, q + n, q + n + 1])]}
+
     def test_cloth_that_stretches_more_than_declared(self):
-        sheet = {"name": "sheet", "columns": 11, "rows": 11, "width": 1, "height": 1, "total_mass": 0.2, "tethers": False,
-                 "pins": [{"row": 0}], "loads": [{"point": 110 + i, "mass": 0.1} for i in range(11)]}
-        told = self.problems({"cloths": [sheet]})["sheet"]
+        loads = {"total_mass": 0.2, "tethers": False, "loads": [{"point": 110 + i, "mass": 0.1} for i in range(11)]}
+        grid = {"name": "sheet", "columns": 11, "rows": 11, "width": 1, "height": 1, "pins": [{"row": 0}]} | loads
+        self.assertEqual(self.problems({"cloths": [grid]}), {})
+        sheet = {"name": "sheet", "mesh": "square", "pins": list(range(11))} | loads
+        square = {"meshes": {"square": self.mesh_of_sheet(11)}}
+        told = self.problems(square | {"cloths": [sheet]})["sheet"]
         # 1.4 m / h^2 with 0.2 kg on 121 points and substeps of 1/480 s.
         self.assertRegex(told["what"], "carries no more than about 533 N/m of its stretch_stiffness")
         # The upper cells bear 1.3 kg on 11 strands, 1.2 N each: 0.1 % of 0.1 m by 1e4 N/m, and twice that as they fall.
         self.assertGreater(told["worst"], 0.02)
-        self.assertEqual(self.problems({"cloths": [sheet | {"stretch_stiffness": 500}]}), {})
-        self.assertEqual(self.problems({"cloths": [sheet]}, "--particle-substeps", 10), {})
+        self.assertEqual(self.problems(square | {"cloths": [sheet | {"stretch_stiffness": 500}]}), {})
+        self.assertEqual(self.problems(square | {"cloths": [sheet]}, "--particle-substeps", 10), {})
         # Of copies one speaks for all.
-        told = self.problems({"cloths": [sheet | {"array": {"grid": [3, 1, 1], "spacing": [2, 1, 1]}}]})
+        told = self.problems(square | {"cloths": [sheet | {"array": {"grid": [3, 1, 1], "spacing": [2, 1, 1]}}]})
         self.assertEqual(len(told), 1)
         self.assertRegex(*[(one["what"], r"\(the worst of 3\)") for one in told.values()][0])
 
@@ -379,9 +391,12 @@ class Warnings(Program):
         rope = {"name": "rope", "masses": 8, "stiffness": 100, "extension_max": 0.05, "hook_point": [0, 3, 0],
                 "direction": [0, -1, 0], "loads": [{"point": "last", "mass": 5}]}
         self.assertEqual(self.problems({"ropes": [rope]}), {})
-        net = {"name": "net", "columns": 9, "rows": 9, "extension_max": 0.05, "areal_density": 0.1,
-               "stretch_stiffness": 100, "pins": [{"row": 0}], "loads": [{"point": 76, "mass": 50}]}
-        told = self.problems({"cloths": [net]})["net"]
+        net = {"name": "net", "extension_max": 0.05, "areal_density": 0.1, "stretch_stiffness": 100,
+               "loads": [{"point": 76, "mass": 50}]}
+        grid = net | {"columns": 9, "rows": 9, "pins": [{"row": 0}]}
+        self.assertEqual(self.problems({"cloths": [grid]}), {})
+        square = {"square": self.mesh_of_sheet(9)}
+        told = self.problems({"meshes": square, "cloths": [net | {"mesh": "square", "pins": list(range(9))}]})["net"]
         self.assertRegex(told["what"], "stretched by .* %, its extension_max is 5 %")
         self.assertGreater(told["worst"], 0.055)
         self.assertAlmostEqual(told["limit"], 0.05, delta=1e-6)

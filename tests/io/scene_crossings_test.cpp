@@ -11,7 +11,8 @@
 #include <vector>
 
 /// Scenes whose cloths, jellies and ropes touch each other, judged in every frame by the checker of
-/// world/crossings.h, which shares no code with the engine.
+/// world/crossings.h, which shares no code with the engine. Cloths that are sewn together cross along their
+/// seam: no scene here has any.
 
 namespace hooke {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 constexpr std::array kScenes = {"balloon_burst",     "catch_net",   "curtain_and_ball", "curtain_rings",
                                 "cushions",          "dents",       "five_sheets",      "folded_blanket",
                                 "hair_on_shoulders", "hammock",     "jelly_on_net",     "laundry_pile",
-                                "noodles",           "rope_on_net", "silk_and_felt",    "squash_ball",
+                                "noodles",           "rope_on_net", "cake_and_blade",   "squash_ball",
                                 "tablecloth",        "tennis_ball", "trampoline",       "twisted_ribbon"};
 constexpr std::array kPerturbed = {"cushions", "five_sheets", "folded_blanket", "laundry_pile",
                                    "twisted_ribbon"};
@@ -82,15 +83,15 @@ std::size_t worst_crossings(const std::string& name, std::uint32_t seed, int fra
 
 TEST_SUITE("io/scene_crossings") {
   TEST_CASE("intersect: nothing crosses in the first frames of scenes that touch") {
-    for (const char* name : {"twisted_ribbon", "silk_and_felt", "cushions"}) {
-      CAPTURE(name);
+    for (const char* name : {"twisted_ribbon", "cushions"}) {
+      CAPTURE(std::string(name));
       CHECK(worst_crossings(name, 0, 90) == 0);
     }
   }
 
   TEST_CASE("long: intersect: nothing crosses in 1000 frames of 20 scenes" * doctest::skip()) {
     for (const char* name : kScenes) {
-      CAPTURE(name);
+      CAPTURE(std::string(name));
       CHECK(worst_crossings(name, 0, 1000) == 0);
     }
   }
@@ -98,7 +99,7 @@ TEST_SUITE("io/scene_crossings") {
   TEST_CASE("long: intersect: nothing crosses in five scenes, each turned in ten ways" * doctest::skip()) {
     for (const char* name : kPerturbed) {
       for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-        CAPTURE(name);
+        CAPTURE(std::string(name));
         CAPTURE(seed);
         CHECK(worst_crossings(name, seed, 300) == 0);
       }

@@ -139,7 +139,7 @@ TEST_SUITE("world/memory") {
       }
       CHECK(other.state_hash() == before);
     }
-    CHECK(allowed > 50);
+    CHECK(allowed > 20);
   }
 
   TEST_CASE("a step without the memory it needs is taken back, and made once there is enough") {
@@ -158,7 +158,7 @@ TEST_SUITE("world/memory") {
         CHECK(yard.world.time() == 0);
       }
     }
-    CHECK(allowed > 50);
+    CHECK(allowed > 20);
     run(yard.world, 60);
     CHECK(yard.world.pose(yard.box).position.y == doctest::Approx(3.5).epsilon(0.01));
   }
