@@ -77,8 +77,8 @@ struct Bends {
   [[nodiscard]] int count() const { return static_cast<int>(stencil.size()); }
   /// An isometric bend never has a zero weight at a wing.
   [[nodiscard]] bool is_isometric(std::size_t row) const { return weights[row][2] != Real(0); }
-  /// Whether a row resists bending along a yarn, at edge_a between its wings. Such a row alone has weights above
-  /// zero at its wings, and none at edge_b, a point beside edge_a.
+  /// Whether a row resists bending along a yarn, at edge_a between its wings. Such a row alone has weights
+  /// above zero at its wings, and none at edge_b, a point beside edge_a.
   [[nodiscard]] bool is_along_yarn(std::size_t row) const { return weights[row][2] > Real(0); }
   [[nodiscard]] std::array<double, 4> weights_of(std::size_t row) const {
     const auto& k = weights[row];
