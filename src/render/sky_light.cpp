@@ -74,9 +74,10 @@ std::array<LinearColor, 9> irradiance_of(const SkyLight& sky) {
     const LinearColor light = radiance(sky, n);
     const std::array<float, 9> basis = {
         1, n.y, n.z, n.x, n.x * n.y, n.y * n.z, 3 * n.z * n.z - 1, n.x * n.z, n.x * n.x - n.y * n.y};
-    for (std::size_t k = 0; k < 9; ++k)
+    for (std::size_t k = 0; k < 9; ++k) {
       for (std::size_t c = 0; c < 3; ++c)
         sums[k][c] += sky.ambient * weight * kFactors[k] * basis[k] * light[c];
+    }
   }
   for (LinearColor& sum : sums) {
     const float gray = 0.3F * sum[0] + 0.5F * sum[1] + 0.2F * sum[2];

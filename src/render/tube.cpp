@@ -169,9 +169,10 @@ void add_tuft(std::span<const Vec3> points, float radius, Vec3 eye, MeshGeometry
   }
   // The tuft is told from others by how many were before it.
   const auto tuft = static_cast<std::uint32_t>(geometry.indices.size() % 65521);
-  for (std::uint32_t hair = 0; hair < kHairs; ++hair)
+  for (std::uint32_t hair = 0; hair < kHairs; ++hair) {
     add_hair(stations, frames, hair_place(hair, tuft), {kTuftRadius * radius, kHairRadius * radius}, eye,
              geometry);
+  }
 }
 
 void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry) {

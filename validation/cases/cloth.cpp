@@ -103,7 +103,7 @@ std::pair<double, double> angles_in_frame(const CheckSetting& setting, double de
 /// Peirce 1930 measures the stiffness of cloth by it). Shoots from the clamp for a free end without moment.
 double angle_of_heavy_strip(double weight) {
   constexpr int kSteps = 2000;
-  constexpr double h = 1.0 / kSteps;
+  constexpr double kStep = 1.0 / kSteps;
   struct State {
     double angle, curvature;
   };
@@ -115,16 +115,16 @@ double angle_of_heavy_strip(double weight) {
     State now = {0, at_clamp};
     end = {};
     for (int i = 0; i < kSteps; ++i) {
-      const double s = i * h;
+      const double s = i * kStep;
       const auto moved = [&](const State& by, double t) {
         return State{now.angle + t * by.angle, now.curvature + t * by.curvature};
       };
-      const State a = rate(s, now), b = rate(s + h / 2, moved(a, h / 2));
-      const State c = rate(s + h / 2, moved(b, h / 2)), d = rate(s + h, moved(c, h));
-      const double middle = moved(b, h / 2).angle;
-      end = end + h * DVec3{std::cos(middle), std::sin(middle), 0};
-      now = {now.angle + h / 6 * (a.angle + 2 * b.angle + 2 * c.angle + d.angle),
-             now.curvature + h / 6 * (a.curvature + 2 * b.curvature + 2 * c.curvature + d.curvature)};
+      const State a = rate(s, now), b = rate(s + kStep / 2, moved(a, kStep / 2));
+      const State c = rate(s + kStep / 2, moved(b, kStep / 2)), d = rate(s + kStep, moved(c, kStep));
+      const double middle = moved(b, kStep / 2).angle;
+      end = end + kStep * DVec3{std::cos(middle), std::sin(middle), 0};
+      now = {now.angle + kStep / 6 * (a.angle + 2 * b.angle + 2 * c.angle + d.angle),
+             now.curvature + kStep / 6 * (a.curvature + 2 * b.curvature + 2 * c.curvature + d.curvature)};
     }
     return now.curvature;
   };

@@ -93,8 +93,9 @@ vec3 sky_irradiance(vec3 n) {
 )";
 }
 
-std::string shadow_part() {
-  return R"(
+namespace {
+
+constexpr const char* kShadowPart = R"(
 uniform sampler2DShadow shadow_map;
 uniform sampler2D shadow_depth;
 
@@ -182,6 +183,11 @@ float sun_visibility(vec3 point, vec3 normal, float n_dot_l) {
 #endif
 }
 )";
+
+}  // namespace
+
+std::string shadow_part() {
+  return kShadowPart;
 }
 
 std::string reflection_part() {

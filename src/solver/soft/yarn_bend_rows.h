@@ -80,6 +80,17 @@ class YarnBendSweep {
     return bend;
   }
 
+  /// The change of velocity of a node, if those of the next two were zero, and its shares of these.
+  struct Eliminated {
+    Triple<Number> change;
+    Number next, second;
+  };
+  HWY_INLINE void store(std::uint32_t i, const Eliminated& node) const {
+    put3(node.change, bends_[i].change, lane_);
+    write(node.next, bends_[i].next + lane_);
+    write(node.second, bends_[i].second + lane_);
+  }
+
   /// Solves (1 + s w K) change = -w K (h x + s v) for the change of velocities, where s = h^2 + h tau, by
   /// elimination without pivots: but for the factors w the matrix is symmetric and positive definite.
   HWY_INLINE void forward() {
@@ -92,8 +103,8 @@ class YarnBendSweep {
     read_quad_widened(velocity_, rows_[0].record + lane_, v);
     read_quad_widened(velocity_, rows_[1].record + lane_, v1);
     Link link_behind = link(0, v, v1);
-    Triple<Number> y1 = {none, none, none}, y2 = y1;  // of the node before, and of the one before that
-    Number e1 = none, f1 = none, e2 = none, f2 = none;
+    Eliminated last = {{none, none, none}, none, none};
+    Eliminated second_last = last;
     for (std::uint32_t i = 0; i <= links_; ++i) {
       Quad<Number> v2 = v1;
       next = no_bend();
@@ -118,20 +129,13 @@ class YarnBendSweep {
       add(next.before, next.pull, rest);
       rest = scaled(none - v.w, rest);
 
-      const Number sub = sub1 - sub2 * e2;
-      take(sub2, y2, rest);
-      take(sub, y1, rest);
-      const Number inverse = quotient(one, one + c * own - sub2 * f2 - sub * e1);
-      y2 = y1;
-      e2 = e1;
-      f2 = f1;
-      y1 = scaled(inverse, rest);
-      e1 = inverse * (super1 - sub * f1);
-      f1 = inverse * super2;
-      YarnBendRow& row = bends_[i];
-      put3(y1, row.change, lane_);
-      write(e1, row.next + lane_);
-      write(f1, row.second + lane_);
+      const Number sub = sub1 - sub2 * second_last.next;
+      take(sub2, second_last.change, rest);
+      take(sub, last.change, rest);
+      const Number inverse = quotient(one, one + c * own - sub2 * second_last.second - sub * last.next);
+      second_last = last;
+      last = {scaled(inverse, rest), inverse * (super1 - sub * last.second), inverse * super2};
+      store(i, last);
       before = here;
       here = next;
       v = v1;
