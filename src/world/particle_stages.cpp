@@ -317,12 +317,8 @@ void solve_springs(WorldData& world, Real h, state::SpringClass first, state::Sp
 }
 
 void solve_yarns(WorldData& world) {
-  for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
-    for (const solver::YarnPass& pass : group.yarns.passes) {
-      division.for_rows(pass.first, pass.end, 1, [&](Range blocks) {
-        solver::solve_yarns(group.yarns, pass, blocks, world.tables.particles);
-      });
-    }
+  for_soft_groups(world, [&world](solver::SoftGroup& group, Division division) {
+    solve_passes(group.yarns, division, 1, world.tables.particles, solver::solve_yarns);
   });
 }
 
@@ -331,10 +327,7 @@ void solve_bends(WorldData& world) {
   for_soft_groups(world, [&particles](solver::SoftGroup& group, Division division) {
     solve_passes(group.bends, division, kBlockGrain, particles, solver::solve_bends);
     solve_passes(group.isometric_bends, division, kBlockGrain, particles, solver::solve_isometric_bends);
-    for (const solver::YarnPass& pass : group.yarns.passes) {
-      division.for_rows(pass.first, pass.end, 1,
-                        [&](Range blocks) { solver::bend_yarns(group.yarns, pass, blocks, particles); });
-    }
+    solve_passes(group.yarns, division, 1, particles, solver::bend_yarns);
   });
 }
 

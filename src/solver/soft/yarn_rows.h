@@ -59,6 +59,16 @@ HWY_INLINE Number bounded_error(Number error, Number rate, const YarnRow& row, i
   return choose(is_limited, bounded(material.limit), bounded(material.spring));
 }
 
+/// The vector of a link, from its node to the next, where these are about to be.
+template <class Number>
+HWY_INLINE Triple<Number> link_at_end(const YarnLanes& at, std::uint32_t i, const Quad<Number>& v0,
+                                      const Quad<Number>& v1) {
+  Triple<Number> d;
+  read_offset(at.position, at.rows[i + 1].record + at.lane, at.rows[i].record + at.lane, d);
+  add(Number(at.h), Triple<Number>{v1.x - v0.x, v1.y - v0.y, v1.z - v0.z}, d);
+  return d;
+}
+
 /// Direction and length of a link, and the rate at which it grows. In a later solution the direction is that
 /// at the end of the substep, and the rate the mean one.
 template <class Number>
@@ -77,7 +87,7 @@ HWY_INLINE LinkMotion<Number> motion_of_link(const YarnLanes& at, std::uint32_t 
   link.length = root(dot(d, d));
   Number end_length = link.length;
   if constexpr (kAgain) {
-    add(Number(at.h), dv, d);
+    d = link_at_end(at, i, v0, v1);
     end_length = root(dot(d, d));
   }
   link.inverse_length = choose(above(end_length, none), quotient(Number(Real(1)), end_length), none);
@@ -97,7 +107,7 @@ HWY_INLINE void eliminate_links(const YarnLanes& at, const YarnMaterial& materia
   Number impulse = none;
   Quad<Number> v0, v1;
   read_quad(at.velocity, at.rows[0].record + at.lane, v0);
-  Number softness = v0.w;  // with which the at.links so far hold the node, along the link
+  Number softness = v0.w;  // with which the links so far hold the node, along the link
   for (std::uint32_t i = 0; i < at.links; ++i) {
     YarnRow& row = at.rows[i];
     read_quad(at.velocity, at.rows[i + 1].record + at.lane, v1);
@@ -208,10 +218,8 @@ HWY_INLINE Number look_at_links(const YarnLanes& at, bool first) {
   read_quad(at.velocity, at.rows[0].record + at.lane, v0);
   for (std::uint32_t i = 0; i < at.links; ++i) {
     YarnRow& row = at.rows[i];
-    Triple<Number> d;
-    read_offset(at.position, at.rows[i + 1].record + at.lane, row.record + at.lane, d);
     read_quad(at.velocity, at.rows[i + 1].record + at.lane, v1);
-    add(Number(at.h), Triple<Number>{v1.x - v0.x, v1.y - v0.y, v1.z - v0.z}, d);
+    const Triple<Number> d = link_at_end(at, i, v0, v1);
     const Number error = root(dot(d, d)) - dot(get3<Number>(row.direction, at.lane), d);
     const auto is_long = above(error, Number(kYarnLengthTolerance) * get<Number>(row.rest_length + at.lane));
     again = choose(is_long, one, again);
@@ -231,9 +239,7 @@ HWY_INLINE Triple<Number> lacking_pull(const YarnLanes& at, std::uint32_t i, Num
                                        const Quad<Number>& v0, const Quad<Number>& v1) {
   const Number none(Real(0));
   YarnRow& row = at.rows[i];
-  Triple<Number> d;
-  read_offset(at.position, at.rows[i + 1].record + at.lane, row.record + at.lane, d);
-  add(Number(at.h), Triple<Number>{v1.x - v0.x, v1.y - v0.y, v1.z - v0.z}, d);
+  const Triple<Number> d = link_at_end(at, i, v0, v1);
   const Number length = root(dot(d, d));
   const Number inverse = choose(above(length, none), quotient(Number(Real(1)), length), none);
   const Triple<Number> pull = scaled(get<Number>(row.given + at.lane) * inverse, d);
@@ -252,7 +258,7 @@ template <class Number>
 HWY_INLINE void turn_taut_links(const YarnLanes& at) {
   const Number none(Real(0));
   const Number one(Real(1));
-  Triple<Number> change = {none, none, none};  // of the at.velocity of a node, if the next did not change
+  Triple<Number> change = {none, none, none};  // of the velocity of a node, if the next did not change
   Triple<Number> lacking_before = change;
   Number tautness_before = none;
   Number share_before = none;  // of the change of the next node
