@@ -1,5 +1,6 @@
 #include "build/blade.h"
 
+#include "base/sort_unique.h"
 #include "build/cloth_splits.h"
 #include "build/point_splits.h"
 #include "build/solid_splits.h"
@@ -15,12 +16,8 @@ namespace {
 /// [ratio].
 constexpr double kRoom = 1e-12;
 
-DVec3 least(DVec3 a, DVec3 b) {
-  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
-}
-DVec3 largest(DVec3 a, DVec3 b) {
-  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
+using geometry::max_of;
+using geometry::min_of;
 
 /// Whether `d` is above the plane of a, b, c; points in the plane count as above it.
 bool is_above(DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
@@ -52,15 +49,11 @@ class ElementPlaces {
   /// Whether the blade may come between an element and a neighbor that is no larger: each way between two
   /// middles is no farther from the larger element than the smaller one is long.
   [[nodiscard]] bool is_near(const SweptBlade& blade, std::uint32_t element) const {
-    DVec3 low = at(mesh_.corners[element][0]);
-    DVec3 high = low;
-    for (const std::uint32_t p : mesh_.corners[element]) {
-      low = least(low, at(p));
-      high = largest(high, at(p));
-    }
-    const double size = length(high - low);
+    geometry::Box3<double> box;
+    for (const std::uint32_t p : mesh_.corners[element]) box = geometry::merge(box, {at(p), at(p)});
+    const double size = length(box.upper - box.lower);
     const DVec3 room = {size, size, size};
-    return blade.may_meet(low - room, high + room);
+    return blade.may_meet({box.lower - room, box.upper + room});
   }
 
  private:
@@ -82,8 +75,7 @@ std::vector<ElementPair> find_parted(const ElementMesh<N>& mesh, const ElementPl
       }
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  base::sort_unique(pairs);
   std::erase_if(pairs, [&](const ElementPair& pair) {
     return !blade.crosses(places.middle(pair[0]), places.middle(pair[1]));
   });
@@ -96,6 +88,24 @@ std::vector<ElementPair> joined(const std::vector<ElementPair>& a, const std::ve
   return all;
 }
 
+/// What a blade does to an object: the pairs between which it leads, these with those that were scored
+/// before, and the points that split.
+struct Parting {
+  std::vector<ElementPair> cut, parted;
+  std::vector<PointSplit> splits;
+};
+
+template <std::size_t N>
+Parting part_by(const SweptBlade& blade, const ElementMesh<N>& mesh, const state::Deformable& object,
+                const state::Tables& t) {
+  Parting parting = {
+      .cut = find_parted(mesh, ElementPlaces<N>(mesh, object, t), blade), .parted = {}, .splits = {}};
+  if (parting.cut.empty()) return parting;
+  parting.parted = joined(parting.cut, object.scored);
+  parting.splits = find_splits<N>(mesh, parting.cut, parting.parted);
+  return parting;
+}
+
 }  // namespace
 
 SweptBlade::SweptBlade(const std::array<DVec3, 2>& from, const std::array<DVec3, 2>& to)
@@ -103,21 +113,19 @@ SweptBlade::SweptBlade(const std::array<DVec3, 2>& from, const std::array<DVec3,
       b_(from[1]),
       c_(to[1]),
       d_(to[0]),
-      low_(least(least(a_, b_), least(c_, d_))),
-      high_(largest(largest(a_, b_), largest(c_, d_))) {
-  const DVec3 sizes = largest(largest(low_, -1.0 * low_), largest(high_, -1.0 * high_));
+      box_{min_of(min_of(a_, b_), min_of(c_, d_)), max_of(max_of(a_, b_), max_of(c_, d_))} {
+  const DVec3 sizes = max_of(max_of(box_.lower, -1.0 * box_.lower), max_of(box_.upper, -1.0 * box_.upper));
   const double room = kRoom * (sizes.x + sizes.y + sizes.z);
-  low_ -= DVec3{room, room, room};
-  high_ += DVec3{room, room, room};
+  box_.lower -= DVec3{room, room, room};
+  box_.upper += DVec3{room, room, room};
 }
 
-bool SweptBlade::may_meet(DVec3 low, DVec3 high) const {
-  return low.x <= high_.x && low_.x <= high.x && low.y <= high_.y && low_.y <= high.y && low.z <= high_.z &&
-         low_.z <= high.z;
+bool SweptBlade::may_meet(const geometry::Box3<double>& box) const {
+  return geometry::overlap(box, box_);
 }
 
 bool SweptBlade::crosses(DVec3 p, DVec3 q) const {
-  if (!may_meet(least(p, q), largest(p, q))) return false;
+  if (!may_meet({min_of(p, q), max_of(p, q)})) return false;
   const bool ab = goes_left(p, q, a_, b_);
   const bool bc = goes_left(p, q, b_, c_);
   const bool ca = goes_left(p, q, c_, a_);
@@ -142,10 +150,8 @@ std::vector<std::uint32_t> find_cut_segments(const state::Deformable& rope, cons
 
 std::optional<ClothCut> cut_cloth(std::uint32_t object, const SweptBlade& blade, state::Tables& t) {
   const ElementMesh<3> mesh = triangles_of(t, t.objects[object]);
-  const std::vector<ElementPair> cut = find_parted(mesh, ElementPlaces<3>(mesh, t.objects[object], t), blade);
+  const auto [cut, parted, splits] = part_by(blade, mesh, t.objects[object], t);
   if (cut.empty()) return std::nullopt;
-  const std::vector<ElementPair> parted = joined(cut, t.objects[object].scored);
-  const std::vector<PointSplit> splits = find_splits<3>(mesh, cut, parted);
   const auto after = corners_after(mesh, t.objects[object].particles, splits);
   ClothCut result = {.edges = static_cast<std::uint32_t>(cut.size()),
                      .first_added = t.objects[object].particles.count,
@@ -161,10 +167,8 @@ std::optional<ClothCut> cut_cloth(std::uint32_t object, const SweptBlade& blade,
 
 std::optional<SolidCut> cut_solid(std::uint32_t object, const SweptBlade& blade, state::Tables& t) {
   const ElementMesh<4> mesh = tetrahedra_of(t, t.objects[object]);
-  const std::vector<ElementPair> cut = find_parted(mesh, ElementPlaces<4>(mesh, t.objects[object], t), blade);
+  const auto [cut, parted, splits] = part_by(blade, mesh, t.objects[object], t);
   if (cut.empty()) return std::nullopt;
-  const std::vector<ElementPair> parted = joined(cut, t.objects[object].scored);
-  const std::vector<PointSplit> splits = find_splits<4>(mesh, cut, parted);
   SolidCut result = {.faces = static_cast<std::uint32_t>(cut.size()),
                      .first_added = t.objects[object].particles.count,
                      .added = static_cast<std::uint32_t>(splits.size()),

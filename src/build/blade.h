@@ -3,6 +3,7 @@
 #include "hooke/cut.h"
 #include "hooke/math.h"
 
+#include "geometry/box.h"
 #include "state/tables.h"
 
 #include <array>
@@ -28,11 +29,11 @@ class SweptBlade {
   /// Whether the way from `p` to `q` crosses the surface an odd number of times.
   [[nodiscard]] bool crosses(DVec3 p, DVec3 q) const;
   /// Whether a box comes near the surface.
-  [[nodiscard]] bool may_meet(DVec3 low, DVec3 high) const;
+  [[nodiscard]] bool may_meet(const geometry::Box3<double>& box) const;
 
  private:
   DVec3 a_, b_, c_, d_;  ///< The triangles a b c and a c d.
-  DVec3 low_, high_;
+  geometry::Box3<double> box_;
 };
 
 /// Segments of a rope that the surface crosses and that still hold, in ascending order.

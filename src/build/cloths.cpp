@@ -253,13 +253,34 @@ Result<void> check_flat(const Surface& s) {
   return {};
 }
 
+/// A row of state::Bends.
+struct BendRow {
+  std::array<std::uint32_t, 4> at = {};  ///< Both ends of an edge, then both wings, as points of the surface.
+  std::array<double, 4> weights = {};
+  double rest_angle = 0;
+  double stiffness = 0;
+  Real damping = Real(0);
+};
+
+void append_bend(const BendRow& row, state::Tables& tables) {
+  state::Deformable& object = tables.objects.back();
+  const auto at = [&](std::size_t k) { return row_of(tables, object, row.at[k]); };
+  tables.bends.stencil.push_back({at(0), at(1), at(2), at(3)});
+  tables.bends.rest_angle.push_back(static_cast<Real>(row.rest_angle));
+  tables.bends.stiffness.push_back(static_cast<Real>(row.stiffness));
+  tables.bends.damping.push_back(row.damping);
+  std::array<Real, 4> weights = {};
+  for (std::size_t k = 0; k < 4; ++k) weights[k] = static_cast<Real>(row.weights[k]);
+  tables.bends.weights.push_back(weights);
+  ++object.bends.count;
+}
+
 /// Appends bends of the stiffness |e|^2 B / (A_1 + A_2) of E = k C^2 / 2 for a flexural rigidity B. Folds of
 /// length |e| across strips of the width (A_1 + A_2) / |e| then bend a sheet of squares about its lines, and
 /// one of equilateral triangles about any line (Seung and Nelson 1988), as a plate of that rigidity does. An
 /// isometric bend, |q| = |e| theta, has the same energy with a stiffness B / (A_1 + A_2).
 void append_hinges(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
   const bool isometric = desc.bend == ClothDesc::Bend::kIsometric;
-  state::Deformable& object = tables.objects.back();
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
     const EdgeSides& sides = s.topology.edge_sides[e];
     if (sides.triangle_count != 2 || !sides.has_same_winding) continue;
@@ -277,41 +298,15 @@ void append_hinges(const Surface& s, const ClothDesc& desc, state::Tables& table
     const double areas = area_of(s, t) + area_of(s, s.triangles[sides.triangles[1]]);
     const double stiffness =
         (isometric ? 1.0 : length_squared(p[b] - p[a])) / areas * static_cast<double>(desc.bend_stiffness);
-    std::array<Real, 4> weights = {};
-    if (isometric) {
-      const auto exact = elements::isometric_bend(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
-      for (std::size_t k = 0; k < 4; ++k) weights[k] = static_cast<Real>(exact[k]);
-    }
-    tables.bends.stencil.push_back({row_of(tables, object, a), row_of(tables, object, b),
-                                    row_of(tables, object, sides.opposite[0]),
-                                    row_of(tables, object, sides.opposite[1])});
-    tables.bends.rest_angle.push_back(static_cast<Real>(d.angle));
-    tables.bends.stiffness.push_back(static_cast<Real>(stiffness));
-    tables.bends.damping.push_back(isometric ? desc.bend_damping
-                                             : static_cast<Real>(stiffness) * desc.bend_damping);
-    tables.bends.weights.push_back(weights);
-    ++object.bends.count;
+    std::array<double, 4> weights = {};
+    if (isometric) weights = elements::isometric_bend(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
+    append_bend({.at = {a, b, sides.opposite[0], sides.opposite[1]},
+                 .weights = weights,
+                 .rest_angle = d.angle,
+                 .stiffness = stiffness,
+                 .damping = isometric ? desc.bend_damping : static_cast<Real>(stiffness) * desc.bend_damping},
+                tables);
   }
-}
-
-/// A row that is isometric in form.
-struct CurvatureRow {
-  std::array<std::uint32_t, 4> at = {};  ///< Both ends of an edge, then both wings, as points of the surface.
-  std::array<double, 4> weights = {};
-  double stiffness = 0;  ///< [N/m] over the square of the unit of the weights.
-};
-
-void append_curvature(const CurvatureRow& row, const ClothDesc& desc, state::Tables& tables) {
-  state::Deformable& object = tables.objects.back();
-  const auto at = [&](int k) { return row_of(tables, object, row.at[static_cast<std::size_t>(k)]); };
-  tables.bends.stencil.push_back({at(0), at(1), at(2), at(3)});
-  tables.bends.rest_angle.push_back(Real(0));
-  tables.bends.stiffness.push_back(static_cast<Real>(row.stiffness));
-  tables.bends.damping.push_back(desc.bend_damping);
-  std::array<Real, 4> weights = {};
-  for (std::size_t k = 0; k < 4; ++k) weights[k] = static_cast<Real>(row.weights[k]);
-  tables.bends.weights.push_back(weights);
-  ++object.bends.count;
 }
 
 /// Appends what gives a grid the energy B (c_x^2 + c_y^2 + 2 c_xy^2) / 2 per area, that of a plate of the
@@ -328,10 +323,11 @@ void append_bends_of_grid(const Surface& s, const ClothDesc& desc, state::Tables
   const double area = length(cross(along, down));
   const auto bend = [&](std::uint32_t at, std::uint32_t beside, std::uint32_t stride, double l, bool at_rim) {
     const double width = (at_rim ? 0.5 : 1.0) * area / l;
-    append_curvature({.at = {at, beside, at - stride, at + stride},
-                      .weights = {-2 / l, 0, 1 / l, 1 / l},
-                      .stiffness = rigidity * width / l},
-                     desc, tables);
+    append_bend({.at = {at, beside, at - stride, at + stride},
+                 .weights = {-2 / l, 0, 1 / l, 1 / l},
+                 .stiffness = rigidity * width / l,
+                 .damping = desc.bend_damping},
+                tables);
   };
   const auto stride = static_cast<std::uint32_t>(s.columns);
   for (int row = 0; row < s.rows; ++row) {
@@ -344,10 +340,11 @@ void append_bends_of_grid(const Surface& s, const ClothDesc& desc, state::Tables
       if (!first_row && !last_row)
         bend(at, last_column ? at - 1 : at + 1, stride, length(down), first_column || last_column);
       if (last_row || last_column) continue;
-      append_curvature({.at = {at, at + stride + 1, at + 1, at + stride},
-                        .weights = {1, 1, -1, -1},
-                        .stiffness = 2 * rigidity / area},
-                       desc, tables);
+      append_bend({.at = {at, at + stride + 1, at + 1, at + stride},
+                   .weights = {1, 1, -1, -1},
+                   .stiffness = 2 * rigidity / area,
+                   .damping = desc.bend_damping},
+                  tables);
     }
   }
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "base/disjoint_sets.h"
+#include "base/lists_by_key.h"
+#include "base/sort_unique.h"
 #include "state/tables.h"
 
 #include <algorithm>
@@ -26,27 +28,22 @@ class Incidence {
  public:
   template <std::size_t N>
   Incidence(std::span<const std::array<std::uint32_t, N>> elements, state::Rows particles)
-      : first_(particles.first), begin_(particles.count + 1, 0), elements_(N * elements.size()) {
-    for (const auto& corners : elements) {
-      for (const std::uint32_t p : corners) ++begin_[p - first_ + 1];
-    }
-    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    std::vector<std::uint32_t> next = begin_;
-    for (std::uint32_t i = 0; i < elements.size(); ++i) {
-      for (const std::uint32_t p : elements[i]) elements_[next[p - first_]++] = i;
-    }
+      : first_(particles.first) {
+    elements_.fill(particles.count, [&](auto visit) {
+      for (std::uint32_t i = 0; i < elements.size(); ++i) {
+        for (const std::uint32_t p : elements[i]) visit(p - first_, i);
+      }
+    });
   }
 
   /// The elements that have a particle, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t particle) const {
-    const std::uint32_t i = particle - first_;
-    return std::span(elements_).subspan(begin_[i], begin_[i + 1] - begin_[i]);
+    return elements_.of(particle - first_);
   }
 
  private:
   std::uint32_t first_;
-  std::vector<std::uint32_t> begin_;
-  std::vector<std::uint32_t> elements_;
+  base::ListsByKey<std::uint32_t> elements_;
 };
 
 /// The triangles of a cloth (N = 3), or the tetrahedra of a solid (N = 4).
@@ -136,8 +133,7 @@ std::vector<PointSplit> find_splits(const ElementMesh<N>& mesh, std::span<const 
       if (mesh.has(b, p)) particles.push_back(p);
     }
   }
-  std::sort(particles.begin(), particles.end());
-  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  base::sort_unique(particles);
   std::vector<PointSplit> splits;
   for (const std::uint32_t p : particles) append_splits(mesh, p, parts_at(mesh, p, parted), splits);
   return splits;

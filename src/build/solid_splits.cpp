@@ -1,6 +1,7 @@
 #include "build/solid_splits.h"
 
 #include "base/assert.h"
+#include "base/sort_unique.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 
 #include <map>
@@ -94,8 +95,7 @@ class SplitSkin {
         around.insert(around.end(), elements.begin(), elements.end());
       }
     }
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
+    base::sort_unique(around);
     const bool changed = std::any_of(around.begin(), around.end(),
                                      [&](std::uint32_t e) { return after_[e] != mesh_.corners[e]; });
     return changed && !are_joined(a, b, around);

@@ -1,5 +1,6 @@
 #include "build/split_tethers.h"
 
+#include "base/sort_unique.h"
 #include "geometry/orientation.h"
 
 #include <cmath>
@@ -45,8 +46,7 @@ std::vector<CrackEdge> list_cracks(const ElementMesh<3>& mesh, Triangles after,
       }
     }
   }
-  std::sort(cracks.begin(), cracks.end());
-  cracks.erase(std::unique(cracks.begin(), cracks.end()), cracks.end());
+  base::sort_unique(cracks);
   return cracks;
 }
 

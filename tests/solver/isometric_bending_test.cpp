@@ -31,14 +31,7 @@ void add_particle(Net& net, Vec3 x, Vec3 v, Real inverse_mass) {
 
 void add_spring(Net& net, std::uint32_t a, std::uint32_t b, SpringClass kind, Real rest_length,
                 Real stiffness) {
-  net.springs.particle_a.push_back(a);
-  net.springs.particle_b.push_back(b);
-  net.springs.rest_length.push_back(rest_length);
-  net.springs.stiffness.push_back(stiffness);
-  net.springs.damping.push_back(Real(0));
-  net.springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
-  net.springs.kind.push_back(kind);
-  net.springs.form.push_back(state::SpringForm::kExplicit);
+  append_spring(a, b, kind, rest_length, stiffness, net.springs);
 }
 
 void add_bend(Net& net, state::Bends::Stencil stencil, std::array<Real, 4> weights, Real stiffness) {

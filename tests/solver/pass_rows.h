@@ -5,7 +5,9 @@
 #include "state/tetrahedra.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <doctest/doctest.h>
+#include <limits>
 #include <vector>
 
 namespace hooke::solver {
@@ -19,6 +21,19 @@ inline std::vector<state::Deformable> owner_of_all(const state::Particles& parti
            .springs = all(springs.count()),
            .bends = all(bends.count()),
            .tetrahedra = all(tetrahedra.count())}};
+}
+
+/// Appends a spring without damping.
+inline void append_spring(std::uint32_t a, std::uint32_t b, state::SpringClass kind, Real rest_length,
+                          Real stiffness, state::Springs& springs) {
+  springs.particle_a.push_back(a);
+  springs.particle_b.push_back(b);
+  springs.rest_length.push_back(rest_length);
+  springs.stiffness.push_back(stiffness);
+  springs.damping.push_back(Real(0));
+  springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
+  springs.kind.push_back(kind);
+  springs.form.push_back(state::SpringForm::kExplicit);
 }
 
 /// Checks that no two rows of one pass share a particle. Returns the number of rows in `blocks` over four

@@ -1,5 +1,6 @@
 #include "solver/soft/yarns.h"
 
+#include "solver/pass_rows.h"
 #include "solver/target_bits.h"
 
 #include <algorithm>
@@ -30,14 +31,7 @@ struct Random {
 
 void add_spring(Net& net, std::uint32_t a, std::uint32_t b, state::SpringClass kind, Real rest_length,
                 Real stiffness) {
-  net.springs.particle_a.push_back(a);
-  net.springs.particle_b.push_back(b);
-  net.springs.rest_length.push_back(rest_length);
-  net.springs.stiffness.push_back(stiffness);
-  net.springs.damping.push_back(Real(0));
-  net.springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
-  net.springs.kind.push_back(kind);
-  net.springs.form.push_back(state::SpringForm::kExplicit);
+  append_spring(a, b, kind, rest_length, stiffness, net.springs);
   ++net.objects[0].springs.count;
 }
 

@@ -3,6 +3,7 @@
 #include "constants.h"
 #include "world/make.h"
 #include "world/pieces.h"
+#include "world/tear_bits.h"
 
 #include <algorithm>
 #include <array>
@@ -123,26 +124,13 @@ TEST_SUITE("world/solid_tear") {
   }
 
   TEST_CASE("the same bits for any workers, and after a restoration in the middle of a tear") {
-    std::array<std::uint64_t, 3> hashes = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      World world = make_world(sleepless_space(8, k == 1 ? 4 : 1));
-      SolidDesc desc = pulled(bar(Real(1e4), Real(1e3)), 0.4);
-      desc.self_contact = true;
-      const SolidId solid = take(world.add_solid(desc));
-      take(world.add_cloth({.columns = 5, .rows = 5, .corner = {5, 0, 0}}));
-      for (int i = 0; i < 100 && world.splits(solid).empty(); ++i) run(world, 1);
-      run(world, 1);
-      REQUIRE(!world.splits(solid).empty());
-      if (k == 2) {
-        const Snapshot middle = world.snapshot();
-        run(world, 8);
-        REQUIRE(world.restore(middle).has_value());
-      }
-      run(world, 16);
-      hashes[k] = world.state_hash();
-    }
-    CHECK(hashes[0] == hashes[1]);
-    CHECK(hashes[0] == hashes[2]);
+    check_bits_of_tear(
+        16, [](int workers) { return make_world(sleepless_space(8, workers)); },
+        [](World& world) {
+          SolidDesc desc = pulled(bar(Real(1e4), Real(1e3)), 0.4);
+          desc.self_contact = true;
+          return take(world.add_solid(desc));
+        });
   }
 
   TEST_CASE("what a solid must be to tear") {

@@ -3,6 +3,7 @@
 #include "constants.h"
 #include "world/make.h"
 #include "world/pieces.h"
+#include "world/tear_bits.h"
 
 #include <algorithm>
 #include <array>
@@ -222,24 +223,9 @@ TEST_SUITE("world/tear") {
   }
 
   TEST_CASE("the same bits for any workers, and after a restoration in the middle of a tear") {
-    std::array<std::uint64_t, 3> hashes = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      World world = make_world(space(k == 1 ? 4 : 1));
-      const ClothId cloth = take(world.add_cloth(pulled(Real(0.25))));
-      take(world.add_cloth({.columns = 5, .rows = 5, .corner = {5, 0, 0}}));
-      for (int i = 0; i < 100 && world.splits(cloth).empty(); ++i) run(world, 1);
-      run(world, 1);
-      REQUIRE(!world.splits(cloth).empty());
-      if (k == 2) {
-        const Snapshot middle = world.snapshot();
-        run(world, 30);
-        REQUIRE(world.restore(middle).has_value());
-      }
-      run(world, 60);
-      hashes[k] = world.state_hash();
-    }
-    CHECK(hashes[0] == hashes[1]);
-    CHECK(hashes[0] == hashes[2]);
+    check_bits_of_tear(
+        60, [](int workers) { return make_world(space(workers)); },
+        [](World& world) { return take(world.add_cloth(pulled(Real(0.25)))); });
   }
 
   TEST_CASE("what a cloth must be to tear") {

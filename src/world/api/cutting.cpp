@@ -2,6 +2,7 @@
 
 #include "hooke/world.h"
 
+#include "base/sort_unique.h"
 #include "build/blade.h"
 #include "build/checks.h"
 #include "world/claim.h"
@@ -41,20 +42,17 @@ Result<std::vector<std::uint32_t>> list_objects(const CutDesc& desc, const Table
   if (rows.empty()) {
     for (std::uint32_t i = 0; i < t.objects.size(); ++i) rows.push_back(i);
   }
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  base::sort_unique(rows);
   return rows;
 }
 
 bool may_meet(const Deformable& object, const SweptBlade& blade, const Tables& t) {
-  DVec3 low = object.origin + vector_cast<double>(t.particles.position[object.particles.first].x);
-  DVec3 high = low;
+  geometry::Box3<double> box;
   for (std::uint32_t i = object.particles.first; i < object.particles.end(); ++i) {
     const DVec3 x = object.origin + vector_cast<double>(t.particles.position[i].x);
-    low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
-    high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
+    box = geometry::merge(box, {x, x});
   }
-  return blade.may_meet(low, high);
+  return blade.may_meet(box);
 }
 
 void cut_object(std::uint32_t row, const SweptBlade& blade, Tables& t, CutResult& result) {
