@@ -58,6 +58,11 @@ constexpr std::array kRefusedCounts = {
                  "stiff solids took too many passes to be solved to the end, and yield more than they should",
                  "larger cells, less stiffness, or more particle_substeps"},
     RefusedCount{
+        &StepReport::cloths_unconverged, "cloths_unconverged",
+        "times cloths under loads took too much work to be solved to the end, and stretched more than "
+        "they should",
+        "fewer points, a load that is not as heavy, or more particle_substeps"},
+    RefusedCount{
         &StepReport::points_held_back, "points_held_back",
         "times points were held back for a substep: surfaces jam, and only that keeps them from crossing",
         "slower motion, stiffer or finer cloth, a smaller thickness, or more substeps"},

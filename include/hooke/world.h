@@ -150,6 +150,9 @@ struct StepReport {
   std::uint32_t coupled_groups_cut_short = 0;
   /// Groups of stiff solids that used up their passes in some substep: they yield more than they should.
   std::uint32_t solids_unconverged = 0;
+  /// Times that a cloth under a load used up its work before it was solved to the end: it stretches more than
+  /// it should.
+  std::uint32_t cloths_unconverged = 0;
   /// Times that a point of a cloth or a solid was held back for a particle substep, because nothing else kept
   /// surfaces from crossing: they jam there. Points and bodies count, too, that went on as one because
   /// nothing else kept the body from passing.

@@ -229,6 +229,7 @@ void refresh_derived(WorldData& world) {
   if (world.derived.revision == tables.revision) return;
   world.derived.revision = tables.revision;
   solver::refresh_soft_groups(tables, world.pool->workers(), world.derived.soft);
+  world.derived.cloth_bearings = solver::find_bearings(tables);
   world.derived.gas_objects.clear();
   world.derived.matched_objects.clear();
   for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
@@ -322,13 +323,36 @@ void solve_yarns(WorldData& world) {
   });
 }
 
+void find_loaded_cloths(WorldData& world) {
+  solver::LoadedCloths& loaded = world.frame.loaded_cloths;
+  loaded.lent.clear();
+  for (const solver::PassMass& mass : world.frame.pass_masses) loaded.lent.push_back(mass.particle);
+  for (const solver::HookedPoint& point : world.frame.hooked_points) loaded.lent.push_back(point.particle);
+  solver::find_loaded_cloths(world.derived.cloth_bearings, world.tables, loaded);
+}
+
+void solve_loaded_cloths(WorldData& world, Real h) {
+  solver::LoadedCloths& loaded = world.frame.loaded_cloths;
+  const auto count = static_cast<int>(loaded.cloths.size());
+  if (count == 0) return;
+  loaded.solutions.resize(static_cast<std::size_t>(world.pool->workers()));
+  loaded.is_unconverged.assign(loaded.cloths.size(), 0);
+  for_ranges(*world.pool, count, 1, [&](Range range, int part) {
+    for (int i = range.begin; i < range.end; ++i)
+      solver::solve_loaded_cloth(static_cast<std::size_t>(i), part, h, world.tables, loaded);
+  });
+  for (const std::uint8_t unconverged : loaded.is_unconverged) world.frame.cloths_unconverged += unconverged;
+}
+
 void solve_bends(WorldData& world) {
   state::Particles& particles = world.tables.particles;
+  solver::begin_outside_forces(solver::OutsideForces::kBends, world.tables, world.frame.loaded_cloths);
   for_soft_groups(world, [&particles](solver::SoftGroup& group, Division division) {
     solve_passes(group.bends, division, kBlockGrain, particles, solver::solve_bends);
     solve_passes(group.isometric_bends, division, kBlockGrain, particles, solver::solve_isometric_bends);
     solve_passes(group.yarns, division, 1, particles, solver::bend_yarns);
   });
+  solver::end_outside_forces(solver::OutsideForces::kBends, world.tables, world.frame.loaded_cloths);
 }
 
 std::uint32_t quarantine_non_finite(WorldData& world) {
@@ -383,12 +407,14 @@ void solve_solids(WorldData& world, Real h) {
     solver::release_pressed_points(h, group.tetrahedra, tables);
   for_matched(world, h, solver::match_shape);
   HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
+  solver::begin_outside_forces(solver::OutsideForces::kGas, tables, world.frame.loaded_cloths);
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       solver::press_gas(tables.objects[world.derived.gas_objects[i]], static_cast<double>(h),
                         world.frame.gas_volumes[i], tables);
     }
   });
+  solver::end_outside_forces(solver::OutsideForces::kGas, tables, world.frame.loaded_cloths);
 }
 
 void move_particles(WorldData& world, Real h) {

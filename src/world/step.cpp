@@ -49,19 +49,21 @@ void prepare(WorldData& w, double dt, Real h) {
 }
 
 /// Solves one particle substep. Soft rows come before yarns, and these before tethers and limits, which must
-/// hold. Then ropes are solved exactly, with what they depend on. Contacts change velocities last, so that
-/// nothing pushes a particle into a body afterwards.
+/// hold; cloths that bear much are solved again, as a whole. Then ropes are solved exactly, with what they
+/// depend on. Contacts change velocities last, so that nothing pushes a particle into a body afterwards.
 void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep, bool first_of_step) {
   world::begin_particle_substep(w, h);
   world::accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
   world::begin_coupled_groups(w, h, first_of_substep);
   world::share_passing_masses(w, h, first_of_step);
+  world::find_loaded_cloths(w);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
   world::solve_yarns(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
+  world::solve_loaded_cloths(w, h);
   world::give_back_passing_masses(w);
   world::solve_ropes(w, end_time, h, first_of_step);
   world::solve_point_contacts(w, h);

@@ -15,6 +15,7 @@
 #include "solver/air/gas_pressure.h"
 #include "solver/air/liquids.h"
 #include "solver/body/dipole_forces.h"
+#include "solver/cloth/loaded_cloths.h"
 #include "solver/contact/backing_contacts.h"
 #include "solver/contact/body_contacts.h"
 #include "solver/contact/impacts.h"
@@ -78,7 +79,8 @@ struct Derived {
   std::uint64_t revision = ~std::uint64_t{0};  ///< Revision of the tables that these members were made from.
   solver::SoftGroups soft;                     ///< Copies of springs, bends, tetrahedra and triangles.
   std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are solved by shape matching.
-  std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
+  std::vector<solver::ClothBearing> cloth_bearings;  ///< What each cloth can bear, in order of creation.
+  std::vector<std::uint32_t> gas_objects;        ///< Rows of closed cloths with gas, in order of creation.
   std::vector<solver::RopeSystem> rope_systems;  ///< One per chain of a rope, in order of creation.
   solver::CoupledGroups coupled_groups;  ///< Ropes with the hooks, points and bodies that they depend on.
   std::uint64_t clamps_revision = 0;     ///< Sum of `revision` and `hook_revision`, both of which only grow.
@@ -155,10 +157,12 @@ struct Frame {
   state::BodyManifolds body_manifolds;        ///< Valid for one step.
   solver::BackingContacts backing_contacts;   ///< Valid for one particle substep.
   std::vector<solver::PassMass> pass_masses;  ///< Valid for one particle substep.
-  std::uint32_t passes_held_back = 0;  ///< Points and bodies that hold_back_passes has moved in this step.
-  std::uint32_t passes_left = 0;       ///< Elements that shapes have come through all the same.
-  solver::SurfaceContacts surfaces;    ///< Contacts of deformables with each other.
-  solver::JoinedSolids joined_solids;  ///< Stiff solids that are solved together.
+  solver::LoadedCloths loaded_cloths;         ///< Valid for one particle substep.
+  std::uint32_t cloths_unconverged = 0;  ///< Solutions of these that did not come to an end in this step.
+  std::uint32_t passes_held_back = 0;    ///< Points and bodies that hold_back_passes has moved in this step.
+  std::uint32_t passes_left = 0;         ///< Elements that shapes have come through all the same.
+  solver::SurfaceContacts surfaces;      ///< Contacts of deformables with each other.
+  solver::JoinedSolids joined_solids;    ///< Stiff solids that are solved together.
   solver::Repulsion repulsion;
   std::vector<state::VelocityRecord> velocity_before;  ///< Velocities of rope nodes before forces act.
   std::vector<solver::AirRecord> wind;                 ///< Velocity of the air at each particle [m/s].

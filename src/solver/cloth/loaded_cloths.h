@@ -1,0 +1,68 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "solver/cloth/cloth_solution.h"
+#include "state/tables.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// \file
+/// Cloths that bear what is much heavier than their yarns. Passes over yarns and springs each know only of
+/// their own points there: 5 kg on one point of a flag of 0.2 kg stretched it by 122 %, whatever its limit
+/// was, and had seven times its energy. Such cloths are solved as a whole (solver/cloth/cloth_solution.h).
+/// Passes give them their first guess.
+
+namespace hooke::solver {
+
+/// How much a cloth can bear by its yarns.
+struct ClothBearing {
+  std::uint32_t object = 0;       ///< Row of the cloth.
+  Real most_mass = kRigid;        ///< Largest mass of a point with what it bears [kg].
+  bool has_heavy_points = false;  ///< Points of its own have more.
+  /// Its isometric bends have springs of their own (solver/soft/isometric_bending.h): both are to be solved
+  /// in one, as passes over bends would count these springs twice.
+  bool bends_have_springs = false;
+};
+
+/// A cloth that is solved as a whole in this substep.
+struct LoadedCloth {
+  std::uint32_t object = 0;  ///< Row of the cloth.
+  std::size_t first = 0;     ///< Of its points in LoadedCloths::unsprung.
+  bool with_bends = false;   ///< Its isometric bends are solved with its springs.
+};
+
+struct LoadedCloths {
+  /// Rows of the particles to which what presses on them, or what they are hooked to, has lent its mass.
+  std::vector<std::uint32_t> lent;
+  std::vector<LoadedCloth> cloths;  ///< In the order of objects.
+  std::vector<Vec3> unsprung;       ///< What their points would do without springs [m/s].
+  std::vector<Vec3> sprung;         ///< Velocities of the points, set aside by begin_outside_forces [m/s].
+  std::vector<ClothSolution> solutions;      ///< Memory, one for each part of a parallel loop.
+  std::vector<std::uint8_t> is_unconverged;  ///< By cloth, 1 for what was not solved to the end.
+  std::vector<std::uint8_t> marks;           ///< Scratch: by bearing, whether it is loaded.
+};
+
+/// Finds what each cloth can bear; call it when tables change.
+[[nodiscard]] std::vector<ClothBearing> find_bearings(const state::Tables& tables);
+
+/// Finds the cloths that are loaded in this substep, by points of their own or by LoadedCloths::lent, and
+/// notes the velocities of their points.
+void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables,
+                        LoadedCloths& loaded);
+
+/// Forces that are no springs act on what points would do without springs: gas, and bends where they are not
+/// solved with the springs. The first function gives points these velocities, before such forces are solved;
+/// after what springs have done to light points they would be without measure. The second function notes what
+/// came of it, and gives points the velocities from before with the same changes.
+enum class OutsideForces : std::uint8_t { kBends, kGas };
+void begin_outside_forces(OutsideForces forces, state::Tables& tables, LoadedCloths& loaded);
+void end_outside_forces(OutsideForces forces, state::Tables& tables, LoadedCloths& loaded);
+
+/// Solves cloth `i` of those loaded for a substep of length `h` [s]. `part` says whose memory it may use.
+void solve_loaded_cloth(std::size_t i, int part, Real h, state::Tables& tables, LoadedCloths& loaded);
+
+}  // namespace hooke::solver
