@@ -2,7 +2,8 @@
 import math
 
 import rope_scenes
-from scene_kit import add, body, box, ground, promise, scaled, scene
+from scene_kit import add, at_point, body, box, ground, promise, scaled, scene
+from solid_scenes import icosphere
 
 
 def rope(*arguments, **more):
@@ -155,4 +156,133 @@ def laundry_pile():
         ], world={"particle_substeps": 2}, cloths=cloths, ropes=[rope("rope", "hemp", coil, 0.15, 0.006, pins=[], air_friction=0.05)])
 
 
-SOFT_CONTACT_SCENES = [rope_on_net, noodles, hair_on_shoulders, curtain_and_ball, laundry_pile]
+RIM = [{"column": 0}, {"column": "last"}, {"row": 0}, {"row": "last"}]
+
+
+def jelly_on_posts():
+    """A coarse jelly on posts that are thinner than its cells."""
+    side, top, half = 0.3, 0.25, 0.012
+    posts = [body(f"post_{k}", "oak", box(half, top / 2, half), [x, top / 2, z], kind="static")
+             for k, (x, z) in enumerate([(-0.08, -0.07), (0.09, -0.06), (0.01, 0.09)])]
+    return scene(
+        "Jelly on posts",
+        "A jelly of eight cells falls on three posts that are a sixth as thick as a cell, none of them under a corner. They dent it "
+        "and do not go in.", 4, [0.75, 0.6, 0.9], [0, 0.3, 0], {"ground": {}, "oak": {"friction": 0.8}, "rose": {"friction": 0.8}},
+        [ground(), *posts], [
+            promise("lowest", ">", top - 0.06, "jelly"),
+            promise("highest", ">", top + 0.7 * side, "jelly"),
+            promise("kinetic_energy", "<", 0.01),
+        ], world={"particle_substeps": 2}, solids=[{
+            "name": "jelly", "material": "rose", "cells": [2, 2, 2], "size": [side] * 3, "density": 300,
+            "young_modulus": 30000, "damping": 0.02, "position": [0, top + side / 2 + 0.05, 0]
+        }])
+
+
+def trampoline_and_jelly():
+    """A jelly falls on a cloth that is held at its rim, and bounces."""
+    top, side, drop = 0.8, 0.2, 0.5
+    mat = sheet("mat", "slate", [-0.6, top, -0.6], 1.2, 25, pins=RIM, areal_density=0.5, thickness=0.006, self_contact=False,
+                stretch_stiffness=3000, damping=5)
+    return scene(
+        "A jelly on a trampoline",
+        "A jelly of 2.4 kg falls by half a meter on a mat that is held at its rim. Both give way and throw it up again; at last it "
+        "lies in the hollow.", 10, [1.3, 1.5, 1.5], [0, 0.85, 0], {"slate": {"friction": 0.8}, "rose": {"friction": 0.8}}, [], [
+            promise("lowest", "<", top - 0.05, "jelly", at_step=26),
+            promise("lowest", ">", top - 0.3, "jelly"),
+            promise("highest", "<", top + 0.15, "jelly"),
+            promise("kinetic_energy", "<", 0.05),
+        ], world={"particle_substeps": 2}, cloths=[mat], solids=[{
+            "name": "jelly", "material": "rose", "cells": [4, 4, 4], "size": [side] * 3, "density": 300,
+            "young_modulus": 20000, "damping": 0.01, "thickness": 0.006, "position": [0, top + side / 2 + drop, 0]
+        }])
+
+
+def balls_in_net():
+    """Balls fall in a cloth that hangs from its corners, and carry each other there."""
+    top, radius = 1.2, 0.08
+    net = sheet("net", "sand", [-0.5, top, -0.5], 1.0, 31, pins=[0, 30, 930, "last"], areal_density=0.3, thickness=0.008,
+                damping=1)
+    places = [[0.17 * (k % 3 - 1) + 0.01 * k, top + 0.1 + 0.2 * (k // 3), 0.13 * (k % 2) - 0.06] for k in range(6)]
+    balls = [body(f"ball_{k}", "clay", {"sphere": {"radius": radius}}, place, mass=1) for k, place in enumerate(places)]
+    return scene(
+        "Balls in a net",
+        "Six balls of 1 kg fall in a cloth of 0.3 kg that hangs from its corners. It takes all of them.",
+        6, [1.3, 1.6, 1.7], [0, 0.95, 0], {"ground": {}, "sand": {"friction": 0.6}, "clay": {"friction": 0.4}}, [ground(), *balls], [
+            *(promise("height", ">", 0.5, f"ball_{k}") for k in range(6)),
+            promise("mean_stretch", "<", 0.05),
+            promise("kinetic_energy", "<", 0.5),
+        ], world={"particle_substeps": 2}, cloths=[net])
+
+
+def cape_and_runner():
+    """A runner carries a cape, which lies on his back and flies behind him."""
+    speed, seconds = 4, 4
+    motion = {"velocity": [speed, 0, 0]}
+    shoulders = [{"point": k, "motion": motion} for k in range(0, 21, 2)]
+    cape = {
+        "name": "cape", "material": "rose", "columns": 21, "rows": 36, "corner": [-0.13, 1.5, -0.25], "column_direction": [0, 0, 1],
+        "row_direction": [-0.5, -0.866, 0], "width": 0.5, "height": 1.0, "areal_density": 0.25, "thickness": 0.006,
+        "self_contact": True, "pins": shoulders
+    }
+    return scene(
+        "A cape and a runner",
+        f"A runner at {speed} m/s carries a cape by its upper edge. The air lifts it behind him; it stretches by less than 5 %, touches "
+        "his back and does not go through.", seconds, [speed * seconds - 2.6, 1.9, 3.2], [speed * seconds - 0.6, 1.1, 0],
+        {"ground": {}, "rose": {}, "slate": {}}, [
+            ground(),
+            body("runner", "slate", {"capsule": {"radius": 0.12, "half_height": 0.4}}, [0, 0.95, 0], "kinematic", motion=motion),
+            body("head", "ivory", {"sphere": {"radius": 0.1}}, [0, 1.65, 0], "kinematic", motion=motion),
+        ], [
+            promise("largest_stretch", "<", 0.05),
+            at_point("x", ">", speed * seconds - 1.4, "cape", 745),
+            at_point("x", "<", speed * seconds - 0.3, "cape", 745),
+            promise("lowest", ">", 0.5, "cape"),
+        ], cloths=[cape])
+
+
+def beanbag():
+    """A closed cloth with balls in it."""
+    radius, inner = 0.3, 0.05
+    places = [[0.115 * (k % 3 - 1), 0.14 + 0.11 * (k // 9), 0.115 * (k // 3 % 3 - 1)] for k in range(27)]
+    balls = [body(f"bean_{k}", "ivory", {"sphere": {"radius": inner}}, place, mass=0.05) for k, place in enumerate(places)]
+    return scene(
+        "Beanbag",
+        "Twenty-seven balls of 50 g lie in a bag of cloth. It sinks down and spreads, and none comes out.",
+        5, [1.0, 0.8, 1.2], [0, 0.2, 0], {"ground": {"friction": 0.6}, "moss": {"friction": 0.6}, "ivory": {"friction": 0.3}},
+        [ground(), *balls], [
+            *(promise("height", "<", 0.5, f"bean_{k}") for k in (0, 13, 26)),
+            *(promise("speed", "<", 0.1, f"bean_{k}") for k in (0, 13, 26)),
+            promise("highest", ">", 0.15, "bag"),
+            promise("lowest", ">", 0, "bag"),
+        ], world={"particle_substeps": 2}, meshes={"bag": icosphere(radius, 3)}, cloths=[{
+            "name": "bag", "material": "moss", "mesh": "bag", "position": [0, radius + 0.004, 0], "areal_density": 0.3,
+            "thickness": 0.006, "stretch_stiffness": 400, "bend_stiffness": 1e-5, "damping": 0.5
+        }])
+
+
+def dumplings():
+    """Closed cloths with gas among each other."""
+    radius = 0.12
+    places = [[0.13 * (k % 3 - 1) + 0.02 * (k // 3), radius + 0.01 + 0.27 * (k // 3), 0.09 * (k % 2) - 0.04] for k in range(5)]
+    places[0][0], places[2][0], places[3][0], places[4][0] = -0.27, 0.27, -0.14, 0.15
+    half, wall = 0.42, 0.01
+    walls = [body(f"wall_{k}", "oak", box(*size), at, kind="static") for k, (size, at) in enumerate([
+        ([wall, 0.1, half], [-half - wall, 0.1, 0]), ([wall, 0.1, half], [half + wall, 0.1, 0]),
+        ([half, 0.1, wall], [0, 0.1, -half - wall]), ([half, 0.1, wall], [0, 0.1, half + wall])])]
+    return scene(
+        "Dumplings",
+        "Five closed cloths full of air fall in a tray, among each other. They dent where they touch, and keep their air.",
+        5, [0.9, 0.9, 1.1], [0, 0.1, 0], {"ground": {"friction": 0.6}, "oak": {}, "ivory": {"friction": 0.5}}, [ground(), *walls], [
+            *(promise("lowest", ">", 0, f"dumpling_{k}") for k in range(5)),
+            promise("highest", "<", 0.6, "dumpling_4"),
+            promise("kinetic_energy", "<", 0.02),
+        ], world={"particle_substeps": 4}, meshes={"dough": icosphere(radius, 2)}, cloths=[{
+            "name": f"dumpling_{k}", "material": "ivory", "mesh": "dough", "position": place, "areal_density": 1, "thickness": 0.006,
+            "pressure": 600, "stretch_stiffness": 4000, "shear_stiffness": 0, "damping": 0.5
+        } for k, place in enumerate(places)])
+
+
+SOFT_CONTACT_SCENES = [
+    rope_on_net, noodles, hair_on_shoulders, curtain_and_ball, laundry_pile, jelly_on_posts, trampoline_and_jelly, balls_in_net,
+    cape_and_runner, beanbag, dumplings
+]
