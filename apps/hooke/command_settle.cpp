@@ -4,6 +4,7 @@
 #include "hooke/model_options.h"
 #include "hooke/output_file.h"
 #include "hooke/settle/drops.h"
+#include "hooke/settle/statics_report.h"
 #include "hooke/statics.h"
 #include "hooke/text_of.h"
 
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
@@ -26,7 +28,9 @@ struct SettleOptions {
   ModelOptions model;
   std::vector<double> center;
   DropOptions drops;
-  std::optional<double> friction, restitution, height;
+  std::optional<double> friction, restitution, height, mass, slope, friction_torque;
+  std::vector<std::string> cables;
+  std::vector<double> axis, through;
   std::string json, csv, out;
   int pose = 1;
 };
@@ -38,6 +42,32 @@ struct Settled {
   StablePoses poses;
   std::optional<DropCounts> drops;
 };
+
+/// Adds the options of rests that are not on a horizontal plane.
+void add_rests(CLI::App& app, SettleOptions& options) {
+  auto* const cables =
+      app.add_option("--cable", options.cables,
+                     "Hang it by this cable, from a place on the model to an anchor; again for each cable")
+          ->option_text("X,Y,Z,ANCHOR_X,ANCHOR_Y,ANCHOR_Z,LENGTH");
+  auto* const axis = app.add_option("--axis", options.axis, "Direction of an axis that it may turn about")
+                         ->delimiter(',')
+                         ->expected(3)
+                         ->option_text("X,Y,Z");
+  app.add_option("--through", options.through, "A point of the axis [m]; the origin by default")
+      ->delimiter(',')
+      ->expected(3)
+      ->needs(axis)
+      ->option_text("X,Y,Z");
+  add_number(app, "--friction-torque", options.friction_torque, 0, 1e12, "Friction of the axle [N m]");
+  app.get_option("--friction-torque")->needs(axis);
+  add_number(app, "--slope", options.slope, 0, 89.9, "Lay it on a slope that falls along +x [degrees]");
+  add_number(app, "--mass", options.mass, 1e-9, 1e12, "Mass, for tensions and torques [kg]; 1 by default");
+  const auto drops = app.get_option("--drops");
+  auto* const slope = app.get_option("--slope");
+  axis->excludes(cables)->excludes(slope)->excludes(drops);
+  cables->excludes(slope)->excludes(drops);
+  slope->excludes(drops);
+}
 
 void add_options(CLI::App& app, SettleOptions& options) {
   app.add_option("MODEL", options.input, "Model to read")->required();
@@ -53,9 +83,11 @@ void add_options(CLI::App& app, SettleOptions& options) {
   app.add_option("--seed", options.drops.seed, "Seed of the random orientations")->needs("--drops");
   add_number(app, "--height", options.height, 0, 1e6,
              "Height of the lowest point before a drop [m]; the radius about the center by default");
-  add_number(app, "--friction", options.friction, 0, 100, "Friction of model and plane; 0.5 by default");
+  add_number(app, "--friction", options.friction, 0, 100,
+             "Friction of model and plane, for --drops and --slope; 0.5 by default");
   add_number(app, "--restitution", options.restitution, 0, 1, "Restitution of both; 0 by default");
-  for (const char* name : {"--height", "--friction", "--restitution"}) app.get_option(name)->needs(drops);
+  for (const char* name : {"--height", "--restitution"}) app.get_option(name)->needs(drops);
+  add_rests(app, options);
   app.add_option("--csv", options.csv, "Write the poses as a table; - prints it");
   app.add_option("--json", options.json, "Write all as JSON; - prints it");
   app.add_option("--out", options.out, "Write the model as it lies in a pose: .obj .glb .stl .3ds");
@@ -68,7 +100,10 @@ void add_options(CLI::App& app, SettleOptions& options) {
       "Examples:\n"
       "  hooke settle scenes/models/crate.3ds\n"
       "  hooke settle scenes/models/crate.3ds --fit 1 --drops 20 --csv poses.csv\n"
-      "  hooke settle scenes/models/lantern.3ds --fit 0.4 --out lying.glb");
+      "  hooke settle scenes/models/lantern.3ds --fit 0.4 --out lying.glb\n"
+      "  hooke settle scenes/models/crate.3ds --fit 1 --mass 50 --cable 0.5,0.5,0,0,3,0,2\n"
+      "  hooke settle scenes/models/crate.3ds --fit 1 --axis 0,0,1 --through 0.5,0,0\n"
+      "  hooke settle scenes/models/crate.3ds --fit 1 --slope 20 --friction 0.4");
 }
 
 /// Finds the poses. A mesh that is no solid is mended; one that cannot be mended is closed by voxels, but
@@ -180,17 +215,91 @@ void print_table(const Settled& settled, const SettleOptions& options) {
   }
 }
 
-/// Returns the drawn half of the model, moved into the pose.
-Model placed(Model model, const StablePose& pose) {
+/// Returns the drawn half of the model, moved to where it rests.
+Model placed(Model model, const RestPlace& place) {
   for (ModelVertex& vertex : model.vertices) {
     const auto [x, y, z] = vertex.position;
-    const DVec3 p = rotate(pose.rotation, DVec3{x, y, z}) + pose.position;
+    const DVec3 p = rotate(place.rotation, DVec3{x, y, z}) + place.position;
     const auto [nx, ny, nz] = vertex.normal;
-    const DVec3 n = rotate(pose.rotation, DVec3{nx, ny, nz});
+    const DVec3 n = rotate(place.rotation, DVec3{nx, ny, nz});
     vertex.position = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
     vertex.normal = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
   }
   return model;
+}
+
+DVec3 vector_of_words(const std::vector<double>& words) {
+  return words.size() == 3 ? DVec3{words[0], words[1], words[2]} : DVec3{};
+}
+
+/// Reads the seven numbers of a cable.
+Result<Cable> cable_of(const std::string& word) {
+  double numbers[7] = {};
+  const char* text = word.c_str();
+  for (int i = 0; i < 7; ++i) {
+    char* end = nullptr;
+    numbers[i] = std::strtod(text, &end);
+    if (end == text || *end != (i < 6 ? ',' : '\0')) {
+      return Error{ErrorCode::kOutOfRange, "--cable",
+                   "'" + word + "' is not seven numbers with commas: place, anchor, length"};
+    }
+    text = end + 1;
+  }
+  return Cable{.attachment = {numbers[0], numbers[1], numbers[2]},
+               .anchor = {numbers[3], numbers[4], numbers[5]},
+               .length = numbers[6]};
+}
+
+bool is_on_plane(const SettleOptions& options) {
+  return options.cables.empty() && options.axis.empty() && !options.slope;
+}
+
+/// Tells how the model hangs, turns about an axis or lies on a slope, whichever is asked for.
+Result<StaticsReport> report_rest(const Settled& settled, const SettleOptions& options) {
+  const double mass = options.mass.value_or(1);
+  const DVec3 center = settled.poses.center;
+  if (options.slope) {
+    const MeshDesc& mesh = settled.solid.triangles.empty() ? settled.model.mesh : settled.solid;
+    return report_slope(options.input, mesh, center, {*options.slope, options.friction.value_or(0.5)});
+  }
+  if (!options.axis.empty()) {
+    return report_axle(options.input, {.center = center,
+                                       .point = vector_of_words(options.through),
+                                       .axis = vector_of_words(options.axis),
+                                       .mass = mass,
+                                       .friction_torque = options.friction_torque.value_or(0)});
+  }
+  HangingSolid solid = {.center = center, .mass = mass};
+  for (const std::string& word : options.cables) {
+    const auto cable = cable_of(word);
+    if (!cable) return cable.error();
+    solid.cables.push_back(cable.value());
+  }
+  return report_hanging(options.input, solid);
+}
+
+/// Writes or prints what statics says of the model, and the model in its pose.
+ExitCode finish_rest(Settled settled, const SettleOptions& options) {
+  const auto made = report_rest(settled, options);
+  if (!made) return report(made.error());
+  const StaticsReport& rest = made.value();
+  if (!options.out.empty() && static_cast<std::size_t>(options.pose) > rest.places.size()) {
+    return report({ErrorCode::kOutOfRange, "--pose",
+                   text_of("%d: the model has %zu such poses", options.pose, rest.places.size())});
+  }
+  if (!is_standard_output(options.json) && !is_standard_output(options.csv)) {
+    std::fputs(rest.table.c_str(), stdout);
+  }
+  if (!options.csv.empty()) {
+    if (auto written = write_file(options.csv, rest.csv); !written) return report(written.error());
+  }
+  if (!options.json.empty()) {
+    if (auto written = write_file(options.json, rest.json); !written) return report(written.error());
+  }
+  if (options.out.empty()) return kGood;
+  const RestPlace& place = rest.places[static_cast<std::size_t>(options.pose) - 1];
+  const auto written = export_model(placed(std::move(settled.model), place), options.out);
+  return written ? kGood : report(written.error());
 }
 
 /// Writes what was asked for.
@@ -203,22 +312,26 @@ Result<void> write_all(Settled settled, const SettleOptions& options) {
   }
   if (options.out.empty()) return {};
   const StablePose& pose = settled.poses.poses[static_cast<std::size_t>(options.pose) - 1];
-  return export_model(placed(std::move(settled.model), pose), options.out);
+  return export_model(placed(std::move(settled.model), {pose.position, pose.rotation}), options.out);
 }
 
 }  // namespace
 
 int command_settle(Arguments arguments) {
-  CLI::App app("Finds the poses in which a model lies still on a plane, and how probable each is.",
+  CLI::App app("Finds where a model rests: lying on a plane or slope, hung from cables, about an axis.",
                "hooke settle");
   SettleOptions options;
   add_options(app, options);
   if (const auto code = parse(app, arguments)) return *code;
+  if (options.friction && options.drops.count == 0 && !options.slope) {
+    return report({ErrorCode::kOutOfRange, "--friction", "needs --drops or --slope"});
+  }
 
   auto model = import_model(options.input, options.model.options());
   if (!model) return report(model.error());
   auto settled = settle(std::move(model).value(), options);
   if (!settled) return report(settled.error());
+  if (!is_on_plane(options)) return finish_rest(std::move(settled).value(), options);
   const std::size_t count = settled.value().poses.poses.size();
   if (static_cast<std::size_t>(options.pose) > count) {
     return report({ErrorCode::kOutOfRange, "--pose",

@@ -603,6 +603,31 @@ class Convert(Program):
         self.assert_one_line(self.hooke("settle", "brick.obj", "--out", "x.obj", "--pose", 7, code=2)[1],
                              "^--pose: 7: the model has 6 stable poses")
 
+    def test_a_brick_hangs_turns_and_lies_on_a_slope(self):
+        self.write_boxes("brick.obj", ((0, 0, 0), (1, 2, 3)))
+        words = ("settle", "brick.obj", "--json", "-", "--mass", 10)
+        # Hung by two upright cables 2 m apart, 0.5 m and 1.5 m from the center: 3/4 and 1/4 of the weight.
+        out, _ = self.hooke(*words, "--cable", "0.5,2,1,0.5,9,1,3", "--cable", "0.5,2,3,0.5,9,3,3", "--out", "h.obj")
+        pose = json.loads(out)["poses"][0]
+        self.assertAlmostEqual(pose["tensions"][0], 0.75 * 98.1, places=6)
+        self.assertAlmostEqual(pose["tensions"][1], 0.25 * 98.1, places=6)
+        lines = (self.folder / "h.obj").read_text().split("\n")
+        heights = [float(line.split()[2]) for line in lines if line.startswith("v ")]
+        self.assertAlmostEqual(max(heights), 6, places=5)
+        # About the z axis through its corner the center hangs below, at atan(1 / 2) from the side.
+        turn = json.loads(self.hooke(*words, "--axis", "0,0,1", "--friction-torque", 5)[0])
+        self.assertAlmostEqual(turn["stable_angle"], -math.pi / 2 - math.atan(2), places=6)
+        self.assertAlmostEqual(turn["torque"], -98.1 * 0.5, places=6)
+        self.assertFalse(turn["stays"])
+        slope = json.loads(self.hooke(*words, "--slope", 30, "--friction", 0.4)[0])
+        self.assertTrue(slope["slides"])
+        self.assertAlmostEqual(slope["slide_angle"], math.atan(0.4), places=12)
+        for arguments, complaint in ((["--cable", "1,2,3"], "^--cable: '1,2,3' is not seven numbers"),
+                                     (["--cable", "0,0,0,0,1,0,-1"], r"^cables\[0\]\.length: "),
+                                     (["--axis", "0,0,0"], "^axis: must have a length"),
+                                     (["--friction", 1], "^--friction: needs --drops or --slope")):
+            self.assert_one_line(self.hooke("settle", "brick.obj", *arguments, code=2)[1], complaint)
+
     def test_an_open_model_takes_its_center_from_voxels_or_from_the_user(self):
         self.write_boxes("open.obj", ((0, 0, 0), (1, 2, 3)), without=1)
         out, errors = self.hooke("settle", "open.obj", "--json", "-")
