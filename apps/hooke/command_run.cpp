@@ -4,6 +4,7 @@
 #include "hooke/progress.h"
 #include "hooke/run_laboratory.h"
 #include "hooke/run_report.h"
+#include "hooke/settle/scene_rest.h"
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -24,6 +25,7 @@ struct RunOptions {
   std::uint64_t hash_every = 0;  ///< Steps between hashes; 0 stands for never.
   std::string stepper;           ///< Method of the laboratory; empty for the solver.
   bool force = false;
+  bool settle = false;       ///< Whether it starts from rest.
   std::uint32_t turned = 0;  ///< Seed of a placement; 0 for none.
 };
 
@@ -42,6 +44,8 @@ void describe(CLI::App& app, RunOptions& options) {
   app.add_flag("--hash", options.hash, "Print only the hash of the last state")->excludes(stepper);
   app.add_option("--hash-every", options.hash_every, "Print step and hash after every so many steps")
       ->check(CLI::PositiveNumber)
+      ->excludes(stepper);
+  app.add_flag("--settle", options.settle, "Bring the scene to rest first, as hooke settle does")
       ->excludes(stepper);
   app.add_option(
          "--turned", options.turned,
@@ -107,6 +111,16 @@ Result<std::optional<OutputFile>> open_report(const RunOptions& options) {
   return std::optional<OutputFile>(std::move(file).value());
 }
 
+/// Brings the scene to rest, and notes how. What breaks on the way is an Error: the scene would not be whole.
+Result<void> settle_first(Simulation& simulation, RunRecord& record) {
+  const auto settled = simulation.world().settle({.dt = simulation.scene().dt});
+  if (!settled) return settled.error();
+  const std::string text = "--settle: " + settle_text(simulation, settled.value());
+  if (settled.value().end == SettleEnd::kBroke) return Error{ErrorCode::kOutOfRange, record.scene, text};
+  (settled.value().converged() ? record.notes : record.warnings).push_back(text);
+  return {};
+}
+
 /// Prints the results, and writes them to `json`, if it has a file.
 ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record,
                        std::optional<OutputFile>& json) {
@@ -165,6 +179,9 @@ int command_run(Arguments arguments) {
   add_lines(built.notes, record.notes);
 
   Simulation& simulation = *built.value;
+  if (options.settle) {
+    if (const auto settled = settle_first(simulation, record); !settled) return report(settled.error());
+  }
   const auto done = simulate(simulation, options, steps, record);
   if (!done) return report(done.error());
   return print_results(simulation, options, record, json.value());

@@ -4,6 +4,7 @@
 #include "hooke/model_options.h"
 #include "hooke/output_file.h"
 #include "hooke/settle/drops.h"
+#include "hooke/settle/scene_rest.h"
 #include "hooke/settle/statics_report.h"
 #include "hooke/statics.h"
 #include "hooke/text_of.h"
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 namespace hooke::app {
@@ -70,7 +72,9 @@ void add_rests(CLI::App& app, SettleOptions& options) {
 }
 
 void add_options(CLI::App& app, SettleOptions& options) {
-  app.add_option("MODEL", options.input, "Model to read")->required();
+  app.add_option("MODEL", options.input,
+                 "Model to read, or a scene, which is brought to rest: hooke settle SCENE.json --help")
+      ->required();
   add_model_options(app, options.model);
   app.add_option("--center", options.center, "Center of mass [m], after scale; that of the volume by default")
       ->delimiter(',')
@@ -318,6 +322,7 @@ Result<void> write_all(Settled settled, const SettleOptions& options) {
 }  // namespace
 
 int command_settle(Arguments arguments) {
+  if (!arguments.empty() && std::string_view(arguments[0]).ends_with(".json")) return settle_scene(arguments);
   CLI::App app("Finds where a model rests: lying on a plane or slope, hung from cables, about an axis.",
                "hooke settle");
   SettleOptions options;

@@ -7,6 +7,7 @@
 #include "hooke/math.h"
 #include "hooke/query.h"
 #include "hooke/result.h"
+#include "hooke/settle.h"
 #include "hooke/shape.h"
 
 #include <cstddef>
@@ -572,6 +573,18 @@ class World {
   /// are as before it, to the bit, and steps that follow are sound. Contacts begin anew, and what ropes,
   /// hooks and folds remember is from the step that broke off: the next step may differ from it in its bits.
   StepReport step(Real dt);
+
+  /// Brings everything to rest under the forces that act: steps by RestWatch, without sleep and damping of
+  /// bodies, until unbalanced forces are small, and leaves it without speed. Time and the count of steps are
+  /// then as before, and so are paths: what is on a path, or blown by gusts, does not rest. The same world
+  /// gives the same rest, bit for bit, with any number of workers. A World that is not converged has gone on
+  /// by the steps. Errors: a field of `desc` out of range, no weight and no SettleDesc::force, a call during
+  /// a step.
+  Result<SettleReport> settle(const SettleDesc& desc = {});
+  /// Returns what moves after a step of `dt` [s].
+  [[nodiscard]] Unrest unrest(double dt, const LeftOut& left_out = {}) const;
+  /// Takes all speed from dynamic bodies and free points. Errors: a call during a step.
+  Result<void> stop(const LeftOut& left_out = {});
 
   /// Sum of the lengths of all steps [s].
   [[nodiscard]] double time() const;

@@ -146,6 +146,22 @@ BodyId id_of(const Tables& t, std::uint32_t body) {
   return t.body_slots.id_of(t.bodies.slot[body]);
 }
 
+PointRef point_of(const Tables& t, const Deformable& object, std::uint32_t index) {
+  switch (object.kind) {
+    case PointRef::Kind::kRope:
+      return point(t.rope_slots.id_of(object.slot), index);
+    case PointRef::Kind::kCloth:
+      return point(t.cloth_slots.id_of(object.slot), index);
+    case PointRef::Kind::kSolid:
+      return point(t.solid_slots.id_of(object.slot), index);
+    case PointRef::Kind::kParticles:
+      return point(t.particles_slots.id_of(object.slot), index);
+    case PointRef::Kind::kNone:
+      break;
+  }
+  return {};
+}
+
 BodyPart part_of(const Tables& t, std::uint32_t collider) {
   const std::uint32_t body = t.colliders.body[collider];
   HOOKE_ASSERT(collider - t.bodies.first_collider[body] < t.bodies.collider_count[body]);

@@ -41,6 +41,9 @@ void mark_ids(std::uint32_t mark, state::Tables& tables);
 void restore_tables(const state::Tables& from, state::Tables& to);
 
 [[nodiscard]] BodyId id_of(const state::Tables& tables, std::uint32_t body);
+/// The id of an object, as that of its point `index`.
+[[nodiscard]] PointRef point_of(const state::Tables& tables, const state::Deformable& object,
+                                std::uint32_t index);
 /// Returns the body of a collider, and the index of the collider among the body's parts.
 [[nodiscard]] BodyPart part_of(const state::Tables& tables, std::uint32_t collider);
 /// Whether the body of collider b was created before that of collider a.

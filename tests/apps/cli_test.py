@@ -230,6 +230,40 @@ class Run(Program):
         self.assertIn("timeline[1]", self.hooke("run", self.scene(content), code=1)[1])
 
 
+class Settle(Program):
+    """Scenes that come to rest, and one that does not."""
+
+    PENDULUM = {
+        "version": 1,
+        "seconds": 1,
+        "bodies": [{"name": "bob", "kind": "dynamic", "shape": {"sphere": {"radius": 0.1}},
+                    "position": [1, 0, 0]}],
+        "hooks": [{"name": "pivot", "kind": "ball", "b": "bob", "anchor": [0, 0, 0]}],
+    }
+
+    def test_a_pendulum_rests_below_its_pivot_and_a_run_may_start_there(self):
+        scene = self.scene(self.PENDULUM)
+        report = json.loads(self.hooke("settle", scene, "--json", "-")[0])
+        self.assertTrue(report["converged"])
+        self.assertLessEqual(report["sum"], 1e-5)
+        for found, asked in zip(report["objects"][0]["position"], (0, -1, 0)):
+            self.assertAlmostEqual(found, asked, delta=1e-3)
+        out, errors = self.hooke("run", scene, "--settle", "--json", "-")
+        self.assertIn("--settle: at rest after", errors)
+        self.assertLess(json.loads(out)["energy"]["end"]["kinetic"], 1e-6)
+        one = self.hooke("settle", scene, "--hash")[0]
+        self.assertEqual(self.hooke("settle", scene, "--hash", "--workers", 2)[0], one)
+
+    def test_what_falls_or_breaks_is_named(self):
+        falling = {**self.PENDULUM, "hooks": []}
+        out, _ = self.hooke("settle", self.scene(falling), "--seconds", 1, code=1)
+        self.assert_one_line(out.split("\n")[0] + "\n", "no rest in 60 steps: .* and 'bob' moves at ")
+        weak = copy.deepcopy(self.PENDULUM)
+        weak["hooks"][0]["break_force"] = 1
+        out, _ = self.hooke("settle", self.scene(weak), code=1)
+        self.assertIn("no rest: 'pivot' (hook) broke after", out)
+
+
 class BadInput(Program):
     def test_errors_name_line_and_path(self):
         name = self.scene('{"version": 1,\n "ropes": [{"masses": 1}]}')

@@ -29,11 +29,6 @@ std::map<SlotKey, std::vector<double>> masses_of_points(Simulation& simulation) 
   return masses;
 }
 
-/// Mass of a point. A cloth that tears gets more points, each with a part of the mass of an old one.
-double mass_at(const Mover& mover, std::size_t index) {
-  return mover.masses.empty() ? 0 : mover.masses[std::min(index, mover.masses.size() - 1)];
-}
-
 std::size_t point_count(const World& world, const Mover& mover) {
   return mover.body ? 1 : positions_of(world, mover.object).size();
 }
@@ -45,18 +40,6 @@ double body_radius(const SceneObject& object) {
     radius = std::max(radius, static_cast<double>(length(part.position)) + radius_of(part.shape, 0));
   }
   return radius;
-}
-
-void add(Unrest& unrest, const Mover& mover, double mass, double kinetic, double dt) {
-  if (!(mass > 0)) return;
-  unrest.kinetic += kinetic;
-  const double force = std::sqrt(2 * mass * kinetic) / dt;
-  unrest.residual = std::max(unrest.residual, force);
-  unrest.sum += force;
-  const double speed = std::sqrt(2 * kinetic / mass);
-  if (!(speed > unrest.speed)) return;
-  unrest.speed = speed;
-  unrest.fastest = mover.name;
 }
 
 /// Names of everything that hooks join to what holds still or is held.
@@ -111,37 +94,25 @@ Movers::Movers(Simulation& simulation) {
   mark(world);
 }
 
-Unrest Movers::unrest(const World& world, double dt) const {
-  Unrest unrest;
+LeftOut Movers::left_out() const {
+  LeftOut left_out;
   for (const Mover& mover : movers_) {
-    if (mover.loose) continue;
+    if (!mover.loose) continue;
     if (mover.body) {
-      add(unrest, mover, mover.masses[0], world.energy(mover.body).kinetic, dt);
-      continue;
-    }
-    const PointView velocities = velocities_of(world, mover.object);
-    for (std::size_t i = 0; i < velocities.size(); ++i) {
-      const DVec3 v = velocities[i];
-      const double mass = mass_at(mover, i);
-      add(unrest, mover, mass, 0.5 * mass * dot(v, v), dt);
+      left_out.bodies.push_back(mover.body);
+    } else {
+      left_out.objects.push_back(point_of(mover.object, 0));
     }
   }
-  return unrest;
+  return left_out;
+}
+
+Unrest Movers::unrest(const World& world, double dt) const {
+  return world.unrest(dt, left_out());
 }
 
 void Movers::stop(World& world) const {
-  // Ids were valid when the list was made, and nothing removes objects. Of a point that is pinned the call
-  // changes nothing.
-  for (const Mover& mover : movers_) {
-    if (mover.loose) continue;
-    if (mover.body) {
-      (void)world.set_velocity(mover.body, {});
-      (void)world.set_angular_velocity(mover.body, {});
-      continue;
-    }
-    const std::size_t count = point_count(world, mover);
-    for (std::size_t i = 0; i < count; ++i) (void)world.set_velocity(point_of(mover.object, i), {});
-  }
+  (void)world.stop(left_out());  // No step runs.
 }
 
 void Movers::mark(const World& world) {

@@ -17,17 +17,6 @@ struct Mover {
   std::vector<DVec3> places = {};  ///< Where its points, or the body's center of mass, were at the last mark.
 };
 
-/// What still moves after a step.
-struct Unrest {
-  /// Largest sqrt(2 m E) / dt of any body or point, m being its mass and E its kinetic energy: the force that
-  /// would stop it within a step [N]. A step from rest makes it the force that is not balanced.
-  double residual = 0;
-  double sum = 0;            ///< Sum of these forces over all bodies and points [N].
-  double speed = 0;          ///< Largest speed [m/s].
-  double kinetic = 0;        ///< Kinetic energy of all [J].
-  std::string fastest = {};  ///< Name of what has that speed.
-};
-
 /// How far something has moved since the last mark.
 struct Move {
   std::string name = {};
@@ -66,6 +55,9 @@ class Movers {
   void set_loose(const std::vector<bool>& loose);
 
  private:
+  /// What is loose.
+  [[nodiscard]] LeftOut left_out() const;
+
   std::vector<Mover> movers_;
 };
 

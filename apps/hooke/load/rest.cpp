@@ -10,7 +10,6 @@ namespace hooke::app {
 
 namespace {
 
-constexpr int kCalmSteps = 3;                 ///< Steps on end that must be calm.
 constexpr std::uint64_t kLooseInterval = 20;  ///< Steps between searches for what fell off.
 
 /// Largest distance of any move [m].
@@ -18,36 +17,21 @@ double farthest(const std::vector<Move>& moves) {
   return moves.empty() ? 0 : length(moves.front().way);
 }
 
-/// Factor on the drift that counts as rest. What jitters or creeps, as large cloths do, is given up on late,
-/// and its residual tells how near it came.
-double leniency(std::uint64_t steps, std::uint64_t most) {
-  if (3 * steps < most) return 1;
-  return 10 * steps < 9 * most ? 100 : 1000;
-}
-
 }  // namespace
 
-Relaxation::Relaxation(Simulation& simulation, Movers& movers, const Push& push)
-    : simulation_(&simulation), movers_(&movers), push_(&push) {
-  for (const SceneObject& object : simulation.objects()) {
-    if (object.kind == SceneObject::Kind::kHook)
-      hooks_[{object.hook.slot, object.hook.generation}] = object.name;
-  }
-}
-
-std::vector<LoadBreak> Relaxation::take_breaks() {
+std::vector<LoadBreak> breaks_of(const Simulation& simulation) {
   std::vector<LoadBreak> breaks;
-  const Events& events = simulation_->world().events();
-  for (const BreakEvent& event : events.breaks) {
-    breaks.push_back({.object = hooks_[{event.hook.slot, event.hook.generation}],
-                      .what = "hook",
-                      .force = static_cast<double>(event.force)});
-  }
+  const Events& events = simulation.world().events();
   const auto name_of = [&](const auto& matches) {
-    const auto objects = simulation_->objects();
+    const auto objects = simulation.objects();
     const auto found = std::find_if(objects.begin(), objects.end(), matches);
     return found == objects.end() ? std::string() : found->name;
   };
+  for (const BreakEvent& event : events.breaks) {
+    breaks.push_back({.object = name_of([&](const SceneObject& one) { return one.hook == event.hook; }),
+                      .what = "hook",
+                      .force = static_cast<double>(event.force)});
+  }
   for (const RopeBreakEvent& event : events.rope_breaks) {
     breaks.push_back({.object = name_of([&](const SceneObject& one) { return one.rope == event.rope; }),
                       .what = text_of("rope, segment %u", event.segment),
@@ -60,6 +44,9 @@ std::vector<LoadBreak> Relaxation::take_breaks() {
   }
   return breaks;
 }
+
+Relaxation::Relaxation(Simulation& simulation, Movers& movers, const Push& push)
+    : simulation_(&simulation), movers_(&movers), push_(&push) {}
 
 Result<void> Relaxation::step(double load) {
   if (auto pushed = push_->apply(simulation_->world(), load); !pushed) return pushed;
@@ -74,17 +61,16 @@ bool Relaxation::settles(Attempt& attempt, const RestRules& rules) {
   const std::uint64_t steps = attempt.outcome.steps;
   const Unrest unrest = movers_->unrest(world, dt);
   attempt.outcome.residual = unrest.residual;
-  const bool at_rest = unrest.sum <= rules.residual && unrest.speed <= rules.speed && !attempt.broke;
-  attempt.calm = at_rest ? attempt.calm + 1 : 0;
-  if (attempt.calm >= kCalmSteps) return true;
-  if (attempt.peaks.passed(unrest.kinetic)) movers_->stop(world);
+  const RestWatch::Verdict verdict = attempt.watch.observe(unrest, attempt.broke);
+  if (verdict == RestWatch::Verdict::kAtRest) return true;
+  if (verdict == RestWatch::Verdict::kPeak) movers_->stop(world);
   if (rules.way > 0 && steps % kLooseInterval == 0) {
     for (std::string& name : movers_->find_loose(*simulation_, push_->names(), rules.way))
       attempt.outcome.fell_off.push_back(std::move(name));
     attempt.second.set_loose(movers_->loose());
   }
   if (steps % second != 0) return false;
-  if (farthest(attempt.second.moves(world)) <= rules.drift * leniency(steps, rules.steps)) return true;
+  if (attempt.watch.is_still(farthest(attempt.second.moves(world)))) return true;
   attempt.second.mark(world);
   return false;
 }
@@ -94,12 +80,16 @@ Result<RestOutcome> Relaxation::run(double load, const RestRules& rules) {
   const World& world = simulation_->world();
   const std::vector<DVec3> start = push_->places(world);
   movers_->mark(world);
-  Attempt attempt = {.outcome = {}, .peaks = {}, .second = *movers_};
+  Attempt attempt = {
+      .outcome = {},
+      .watch = RestWatch(
+          {.residual = rules.residual, .speed = rules.speed, .drift = rules.drift, .steps = rules.steps}),
+      .second = *movers_};
   RestOutcome& outcome = attempt.outcome;
   while (outcome.steps < rules.steps) {
     if (auto stepped = step(load); !stepped) return stepped.error();
     ++outcome.steps;
-    std::vector<LoadBreak> breaks = take_breaks();
+    std::vector<LoadBreak> breaks = breaks_of(*simulation_);
     attempt.broke = !breaks.empty();
     for (LoadBreak& one : breaks) outcome.breaks.push_back(std::move(one));
     if (attempt.broke && rules.ends_at_break) return outcome.end = End::kBroke, outcome;

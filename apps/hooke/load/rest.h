@@ -4,7 +4,6 @@
 #include "hooke/load/push.h"
 #include "hooke/load/raise.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -30,26 +29,10 @@ struct RestOutcome {
   std::vector<std::string> fell_off = {};
 };
 
-/// Watches the kinetic energy for its peaks.
-class Peaks {
- public:
-  /// Takes the energy after a step [J]. Returns whether it fell after it had risen.
-  bool passed(double kinetic) {
-    const bool fell = kinetic < last_;
-    const bool is_peak = fell && rising_;
-    rising_ = !fell;
-    last_ = is_peak ? 0 : kinetic;
-    return is_peak;
-  }
+/// Lists what broke in the last step, with names.
+[[nodiscard]] std::vector<LoadBreak> breaks_of(const Simulation& simulation);
 
- private:
-  double last_ = 0;
-  bool rising_ = false;
-};
-
-/// Brings simulations to rest by dynamic relaxation with kinetic damping (Cundall 1976; Papadrakakis 1981;
-/// Barnes 1999): it runs freely, and takes all speed away when the kinetic energy has passed a peak. No
-/// damping force is left in the equilibrium, and one way past a peak is all it overshoots.
+/// Brings simulations to rest by RestWatch, under a load, until something breaks or runs away.
 class Relaxation {
  public:
   Relaxation(Simulation& simulation, Movers& movers, const Push& push);
@@ -61,21 +44,18 @@ class Relaxation {
   /// What is known while it runs.
   struct Attempt {
     RestOutcome outcome;
-    Peaks peaks;
+    RestWatch watch;
     Movers second;       ///< Marked once a second, to see drift.
-    int calm = 0;        ///< Calm steps on end.
     bool broke = false;  ///< Whether something broke in the last step.
   };
 
   [[nodiscard]] Result<void> step(double load);
-  [[nodiscard]] std::vector<LoadBreak> take_breaks();
   /// Looks at the state after a step, and damps it. Returns whether it is rest.
   [[nodiscard]] bool settles(Attempt& attempt, const RestRules& rules);
 
   Simulation* simulation_;
   Movers* movers_;
   const Push* push_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> hooks_;  ///< Names by slot and generation.
 };
 
 }  // namespace hooke::app

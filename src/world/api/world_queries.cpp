@@ -112,26 +112,9 @@ Result<void> check_look(const std::shared_ptr<WorldData>& data, const Deformable
   return build::Checks("query").up_to("filter.margin", margin, limits::kSize).result();
 }
 
-/// The id of an object, as that of its point `index`.
-PointRef point_of(const Tables& t, const state::Deformable& object, std::uint32_t index) {
-  switch (object.kind) {
-    case PointRef::Kind::kRope:
-      return point(t.rope_slots.id_of(object.slot), index);
-    case PointRef::Kind::kCloth:
-      return point(t.cloth_slots.id_of(object.slot), index);
-    case PointRef::Kind::kSolid:
-      return point(t.solid_slots.id_of(object.slot), index);
-    case PointRef::Kind::kParticles:
-      return point(t.particles_slots.id_of(object.slot), index);
-    case PointRef::Kind::kNone:
-      break;
-  }
-  return {};
-}
-
 DeformablePlace place_of(const Tables& t, const collision::DeformableSpot& spot) {
   const auto& [a, b, c] = spot.weights;
-  return {.nearest = point_of(t, t.objects[spot.object], collision::point_with_most_weight(t, spot)),
+  return {.nearest = world::point_of(t, t.objects[spot.object], collision::point_with_most_weight(t, spot)),
           .element = spot.element,
           .corners = spot.corners,
           .weights = {static_cast<Real>(a), static_cast<Real>(b), static_cast<Real>(c)},
