@@ -1,4 +1,5 @@
 #include "hooke/command_line.h"
+#include "hooke/load/load_picture.h"
 #include "hooke/load/load_report.h"
 #include "hooke/load/movers.h"
 #include "hooke/load/push.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <utility>
 
 namespace hooke::app {
@@ -22,7 +24,7 @@ struct LoadWords {
   std::vector<double> at, direction;
   std::string until = "collapse";
   std::optional<double> nominal, first, tolerance, way, patience;
-  std::string csv, json, plot;
+  std::string csv, json, plot, picture;
   SceneOverrides overrides;
 };
 
@@ -46,7 +48,7 @@ void describe(CLI::App& app, LoadWords& words) {
       ->delimiter(',')
       ->expected(3)
       ->option_text("X,Y,Z");
-  app.add_option("--until", words.until, "collapse, break, or the largest load [N]")
+  app.add_option("--until", words.until, "collapse, break, yield, or the largest load [N]")
       ->capture_default_str()
       ->option_text("WHAT");
   add_number(app, "--nominal", words.nominal, 1e-9, 1e12,
@@ -63,6 +65,8 @@ void describe(CLI::App& app, LoadWords& words) {
   app.add_option("--csv", words.csv, "Write a line for each equilibrium; - prints it");
   app.add_option("--json", words.json, "Write all as JSON; - prints it");
   app.add_option("--plot", words.plot, "Draw the members' forces over the load: .png or .svg");
+  app.add_option("--picture", words.picture,
+                 "Draw the last equilibrium before a break, members colored by how much they are used: .png");
   add_overrides(app, words.overrides);
   app.footer(
       "Brings the scene to rest, raises the force in steps that wait for rest, and goes back where "
@@ -100,15 +104,17 @@ Result<RaiseOptions> raise_options(const LoadWords& words, double weight, double
   options.tolerance = words.tolerance.value_or(options.tolerance);
   options.patience = words.patience.value_or(options.patience);
   options.way = words.way.value_or(kUsualWay * extent);
-  options.until_break = words.until == "break";
+  options.until_break = words.until == "break" || words.until == "yield";
+  options.until_limit = words.until == "yield";
   options.most = kMostWeights * weight;
   if (words.nominal) options.most = std::max(options.most, 100 * *words.nominal);
-  if (words.until != "break" && words.until != "collapse") {
+  if (words.until != "break" && words.until != "yield" && words.until != "collapse") {
     char* end = nullptr;
     options.most = std::strtod(words.until.c_str(), &end);
     if (*end != '\0' || !(options.most > 0) || !(options.most <= 1e12)) {
-      return Error{ErrorCode::kOutOfRange, "--until",
-                   "'" + words.until + "' is neither collapse, nor break, nor a force up to 1e12 N"};
+      return Error{
+          ErrorCode::kOutOfRange, "--until",
+          "'" + words.until + "' is neither collapse, nor break, nor yield, nor a force up to 1e12 N"};
     }
   }
   options.first = words.first.value_or(std::min(kUsualFirst * weight, options.most));
@@ -148,6 +154,35 @@ bool can_break(const SceneObjects& objects) {
          });
 }
 
+/// Tells whether a scene has a bar that may yield or buckle.
+bool has_section(const SceneObjects& objects) {
+  const auto any = [](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [](const auto& one) { return one.section.has_value(); });
+  };
+  return any(objects.bodies) || any(objects.hooks);
+}
+
+/// Warns of sections that nothing is evaluated by, because their object is no bar.
+void warn_of_sections(const Scene& scene, const Raised& raised, const std::string& path) {
+  std::set<std::string> evaluated;
+  for (const Member& member : raised.members) {
+    if (member.yield_force > 0 || member.buckling_force > 0) evaluated.insert(member.name);
+  }
+  const auto look = [&](const std::string& name, bool has) {
+    const bool is_evaluated = std::any_of(evaluated.begin(), evaluated.end(), [&](const std::string& one) {
+      return one == name || one.starts_with(name + "[");
+    });
+    if (!has || name.empty() || is_evaluated) return;
+    warn({ErrorCode::kOutOfRange, path,
+          "the section of '" + name +
+              "' has no effect: it needs a yield_stress, or a young_modulus and a second moment, and its "
+              "object must be "
+              "a distance hook or a body that hooks hold at exactly two places"});
+  };
+  for (const SceneBody& body : scene.objects.bodies) look(body.tag.name, body.section.has_value());
+  for (const SceneHook& hook : scene.objects.hooks) look(hook.name, hook.section.has_value());
+}
+
 ExitCode run_load(Simulation& simulation, const LoadWords& words) {
   Movers movers(simulation);
   const DVec3 gravity = vector_cast<double>(simulation.world().desc().gravity);
@@ -161,6 +196,7 @@ ExitCode run_load(Simulation& simulation, const LoadWords& words) {
   if (!options) return report(options.error());
   const auto raised = raise_load(simulation, movers, push.value(), options.value());
   if (!raised) return report(raised.error());
+  warn_of_sections(simulation.scene(), raised.value(), words.scene);
   LoadTitle title = {.scene = words.scene,
                      .direction = push.value().direction(),
                      .nominal = words.nominal,
@@ -170,6 +206,10 @@ ExitCode run_load(Simulation& simulation, const LoadWords& words) {
   const bool taken = is_standard_output(words.csv) || is_standard_output(words.json);
   if (!taken) std::fputs(load_summary(raised.value(), title).c_str(), stdout);
   if (const auto written = write_all(raised.value(), title, words); !written) return report(written.error());
+  if (!words.picture.empty() && !raised.value().equilibria.empty()) {
+    const auto drawn = draw_load(simulation, raised.value(), words.picture);
+    if (!drawn) return report(drawn.error());
+  }
   const auto reserve = reserve_of(raised.value(), title);
   return raised.value().equilibria.empty() || (reserve && *reserve < 1) ? kFailed : kGood;
 }
@@ -190,6 +230,9 @@ int command_load(Arguments arguments) {
     return report(
         {ErrorCode::kOutOfRange, "--plot", "'" + words.plot + "' ends neither in .png nor in .svg"});
   }
+  if (!words.picture.empty() && !words.picture.ends_with(".png")) {
+    return report({ErrorCode::kOutOfRange, "--picture", "'" + words.picture + "' does not end in .png"});
+  }
   std::optional<Scene> scene = read_scene(words.scene);
   if (!scene) return kBadInput;
   if (words.until == "break" && !can_break(scene->objects)) {
@@ -197,6 +240,11 @@ int command_load(Arguments arguments) {
         {ErrorCode::kOutOfRange, "--until break",
          "nothing in the scene can break: hooks need a break_force or break_torque, ropes and cloths "
          "a strength"});
+  }
+  if (words.until == "yield" && !has_section(scene->objects)) {
+    return report(
+        {ErrorCode::kOutOfRange, "--until yield",
+         "no body and no distance hook of the scene has a section with what it yields or buckles at"});
   }
   std::optional<Simulation> simulation = build_simulation(still_scene(std::move(*scene), words));
   if (!simulation) return kBadInput;

@@ -176,6 +176,19 @@ struct SceneBlade {
   std::array<Vec3, 2> edge = {};       ///< Ends of the edge in the body's frame [m].
   std::vector<std::string> cuts = {};  ///< Names of what it cuts, arrays as a whole; empty for all.
 };
+/// The cross section of a bar, for `hooke load`. It is told by its area and second moment, or by its shape:
+/// round with a radius, a tube if it has a thickness; or a rectangle, a box if it has a thickness.
+struct SceneSection {
+  std::optional<Real> area = {};           ///< [m^2], positive.
+  std::optional<Real> second_moment = {};  ///< The least one, about an axis in the section [m^4], positive.
+  std::optional<Real> radius = {};         ///< Outer radius [m], positive.
+  std::optional<Real> width = {};          ///< Of a rectangle [m], positive.
+  std::optional<Real> height = {};         ///< Of a rectangle [m], positive.
+  std::optional<Real> thickness = {};      ///< Of the wall of a tube or box [m], positive.
+  std::optional<Real> young_modulus = {};  ///< [Pa]; that of the material by default.
+  std::optional<Real> yield_stress = {};   ///< Stress at which it yields [Pa].
+  Real length_factor = Real(1);  ///< Length over which it buckles, over its length; 1 for hinged ends.
+};
 /// A body.
 struct SceneBody {
   SceneTag tag = {};                  ///< Name, material, friction and copies.
@@ -186,7 +199,8 @@ struct SceneBody {
   /// Replaces a dynamic box, hull or mesh by its cells, named `name[0]`, ..., of all copies one after the
   /// other, and the hooks between them, `name_glue[0]`, ...
   std::optional<SceneFracture> fracture = {};
-  std::optional<SceneBlade> blade = {};  ///< Makes a blade of a kinematic body.
+  std::optional<SceneBlade> blade = {};      ///< Makes a blade of a kinematic body.
+  std::optional<SceneSection> section = {};  ///< Of a bar, by which `hooke load` evaluates it.
 };
 /// A rope.
 struct SceneRope {
@@ -230,8 +244,9 @@ struct SceneHook {
   std::string b = {};  ///< The same of the other side.
   /// Point of a rope, cloth, solid or particles on side a; without it, the place nearest to the anchor.
   std::optional<ScenePoint> a_point = {};
-  std::optional<ScenePoint> b_point = {};  ///< The same of side b.
-  SceneArray array = {};                   ///< Copies of the hook; offsets move their anchors.
+  std::optional<ScenePoint> b_point = {};    ///< The same of side b.
+  std::optional<SceneSection> section = {};  ///< Of a distance hook, by which `hooke load` evaluates it.
+  SceneArray array = {};                     ///< Copies of the hook; offsets move their anchors.
 };
 /// Two lines that are sewn together. The stitches are hooks named `name[0]`, `name[1]`, ... In an array, copy
 /// i sews copy i of `a` and of `b`, as a hook holds them, and its stitches follow those of the copy before.

@@ -60,8 +60,12 @@ class Program(unittest.TestCase):
 
     def draw(self, *words):
         """As hooke render; skips the test on a machine without OpenGL."""
-        done = subprocess.run([PROGRAM, "render", *map(str, words)], cwd=self.folder, capture_output=True,
-                              text=True, check=False, timeout=LIMIT)
+        self.draw_by("render", *words)
+
+    def draw_by(self, *words):
+        """Runs a command that draws; skips the test on a machine without OpenGL."""
+        done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, capture_output=True, text=True,
+                              check=False, timeout=LIMIT)
         if done.returncode == 3 and "headless OpenGL" in done.stderr:
             self.skipTest("no OpenGL without a display: " + done.stderr.strip())
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import pathlib
 import sys
 import unittest
@@ -9,6 +10,7 @@ import unittest
 import cli_test
 import trusses
 from cli_test import Program
+from png import read_png
 
 G = 9.81
 
@@ -127,6 +129,62 @@ class Trusses(Load):
         self.assert_forces(truss, report, weights, at=0)
         loads = weights | {"b2": (0, weights["b2"][1] - 1000 * G)}
         self.assert_forces(truss, report, loads)
+
+    def test_sections_yield_and_buckle_where_bar_forces_say(self):
+        truss = trusses.warren()
+        # Tubes of steel, 20 mm by 2 mm: A = pi (R^2 - r^2), I = pi / 4 (R^4 - r^4).
+        section = {"radius": 0.02, "thickness": 0.002, "young_modulus": 2.1e11, "yield_stress": 2.35e8}
+        area = math.pi * (0.02**2 - 0.018**2)
+        moment = math.pi / 4 * (0.02**4 - 0.018**4)
+        each = truss.forces({"b2": (0, -1)})
+        for factor, rods in ((1, True), (0.7, False)):
+            section["length_factor"] = factor
+            scene = truss.of_rods() if rods else truss.of_bars()
+            for one in scene["hooks"] if rods else scene["bodies"]:
+                if one.get("kind") == "distance" or "_" in one["name"] and not rods:
+                    one["section"] = section
+            scene["world"] = {"gravity": [0, 0, 0]}
+            report, errors = self.load(scene, "--on", "b2", "--first", 100, "--until", 300000, "--nominal", 50000)
+            self.assertEqual(errors, "")
+            to_yield = {bar: area * 2.35e8 / abs(force) for bar, force in each.items() if abs(force) > 1e-6}
+            weakest = min(to_yield, key=to_yield.get)
+            first = report["first_yield"]
+            self.assertAlmostEqual(first["at"] / to_yield[weakest], 1, delta=1e-4)
+            self.assertAlmostEqual(to_yield[tuple(first["member"].split("_"))] / to_yield[weakest], 1, delta=1e-6)
+            self.assertTrue(first["held"] < first["at"] <= first["load"])
+            to_buckle = {bar: math.pi**2 * 2.1e11 * moment / (factor * truss.length(bar))**2 / -force
+                         for bar, force in each.items() if force < -1e-6}
+            self.assertAlmostEqual(report["first_buckling"]["at"] / min(to_buckle.values()), 1, delta=1e-4)
+            least = min(min(to_yield.values()), min(to_buckle.values()))
+            self.assertAlmostEqual(report["reserve"], least / 50000, delta=1e-3)
+            last = {one["name"]: one for one in report["equilibria"][-1]["members"]}
+            name = "_".join(weakest)
+            self.assertAlmostEqual(last[name]["yield_force"], area * 2.35e8, delta=1)
+            self.assertGreater(last[name]["utilization"], 1)
+
+    def test_the_search_may_end_where_the_first_member_yields(self):
+        truss = trusses.warren()
+        scene = truss.of_rods(section={"area": 1e-4, "yield_stress": 2e8}) | {"world": {"gravity": [0, 0, 0]}}
+        report, _ = self.load(scene, "--on", "b2", "--first", 100, "--until", "yield")
+        self.assertEqual(report["equilibria"][-1]["load"], report["first_yield"]["load"])
+        self.assert_between(report["first_yield"], 2e8 * 1e-4 / max(map(abs, truss.forces({"b2": (0, -1)}).values())))
+        self.assertIsNone(report["first_buckling"])
+        scene["hooks"][-1]["section"] = {"area": 1e-4}
+        _, errors = self.load(scene, "--on", "b2", "--first", 100, "--until", 200)
+        self.assert_one_line(errors, "warning: .*the section of '.*' has no effect: it needs a yield_stress")
+        self.assert_one_line(self.hooke("load", self.scene(truss.of_rods()), "--on", "b2", "--until", "yield", code=2)[1],
+                             "^--until yield: no body and no distance hook")
+
+    def test_members_are_drawn_in_the_color_of_their_utilization(self):
+        truss = trusses.warren()
+        scene = truss.of_rods(section={"area": 1e-4, "yield_stress": 2e8}) | {"world": {"gravity": [0, 0, 0]}}
+        words = ("load", self.scene(scene), "--on", "b2", "--first", 100, "--until", "yield", "--picture", "used.png")
+        self.draw_by(*words)
+        _, _, rows = read_png(self.folder / "used.png")
+        pixels = [row[i:i + 3] for row in rows for i in range(0, len(row), 3)]
+        # The weakest bar is violet, those at the supports are used by a quarter: between blue and green.
+        self.assertTrue(any(min(r, b) > 2 * g and min(r, b) > 60 for r, g, b in pixels))
+        self.assertTrue(any(g > 2 * r and g > b > r for r, g, b in pixels))
 
     def test_the_truss_of_15_bars_fails_at_the_load_of_limit_analysis(self):
         # It is statically determinate: it lasts as long as its bars do. Hinges of 20 kN carry half the weight

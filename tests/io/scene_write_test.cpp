@@ -98,6 +98,9 @@ constexpr const char* kEverything = R"({
     {"name": "glass", "kind": "dynamic", "shape": {"box": {}}, "fracture": {"cells": 5, "seed": 8, "impact": [0.1, 0, 0], "impact_radius": 0.1,
      "least_share": 0.1, "least_face": 0.2, "strength": 5000}},
     {"kind": "dynamic", "shape": {"box": {}}, "fracture": {"seeds": [[0, 0, 0], [0.5, 0, 0]], "strength": "rigid"}},
+    {"kind": "dynamic", "shape": {"box": {}}, "section": {"area": 0.01, "second_moment": 1e-5, "young_modulus": 2e11, "yield_stress": 2e8, "length_factor": 0.7}},
+    {"kind": "dynamic", "shape": {"box": {}}, "section": {"radius": 0.05, "thickness": 0.01}},
+    {"kind": "dynamic", "shape": {"box": {}}, "section": {"width": 0.05, "height": 0.125}},
     {"shape": {"capsule": {}}, "sensor": true}, {"shape": {"cylinder": {}}}],
   "ropes": [
     {"name": "rope", "stepper": "verlet", "hook_point": [0, 3, 0], "direction": [0, -1, 0], "total_mass": 2,

@@ -75,6 +75,19 @@ std::shared_ptr<const render::Image> SceneCapture::find_texture(const std::strin
   return entry->second;
 }
 
+namespace {
+
+void paint_ranges(render::Color color, std::vector<PaintedRange>& ranges) {
+  for (PaintedRange& range : ranges) range.finish = {.color = color};
+}
+
+void paint_figure(render::Color color, Figure& figure) {
+  paint_ranges(color, figure.ranges);
+  for (FigureSolid& solid : figure.solids) paint_ranges(color, solid.ranges);
+}
+
+}  // namespace
+
 std::shared_ptr<Figure> SceneCapture::find_figure(const Simulation& simulation, const SceneObject& object) {
   std::shared_ptr<Figure>& figure = figures_[key_of(object)];
   // What has torn or was cut is a new figure; who draws may still have the one before.
@@ -86,6 +99,8 @@ std::shared_ptr<Figure> SceneCapture::find_figure(const Simulation& simulation, 
         simulation, object,
         [this](const std::string& path, const ImageBytes& bytes) { return find_texture(path, bytes); },
         geometries_));
+    const auto painted = colors_.find(object.name);
+    if (painted != colors_.end()) paint_figure(painted->second, *figure);
   }
   return figure;
 }

@@ -36,6 +36,9 @@ struct SceneState {
 /// once, and touches no figure after it has given it away.
 class SceneCapture {
  public:
+  /// Draws the objects of these names in plain colors, in place of their own look.
+  void paint(std::map<std::string, render::Color> colors) { colors_ = std::move(colors); }
+
   /// Copies the present state, and gives it the time [s].
   SceneState capture(const Simulation& simulation, double time);
 
@@ -50,6 +53,7 @@ class SceneCapture {
   std::map<ObjectKey, std::shared_ptr<Figure>> figures_;
   /// By path, or by the bytes of an image that a model holds.
   std::map<std::pair<std::string, ImageBytes>, std::shared_ptr<const render::Image>> textures_;
+  std::map<std::string, render::Color> colors_;
   std::vector<std::string> warnings_;
   std::optional<Viewpoint> automatic_;
 };

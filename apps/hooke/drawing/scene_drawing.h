@@ -31,6 +31,9 @@ class SceneDrawing {
  public:
   explicit SceneDrawing(DrawingStyle style = {}) : style_(std::move(style)) {}
 
+  /// Draws the objects of these names in plain colors; to be called before the first record().
+  void paint(std::map<std::string, render::Color> colors) { capture_.paint(std::move(colors)); }
+
   /// Copies the present state; the copy before it stays for interpolation.
   void record(const Simulation& simulation) { record(simulation, simulation.world().time()); }
   /// Copies the state with a time [s] of its own, for worlds whose points were moved by hand.

@@ -41,15 +41,6 @@ std::string moves_text(const std::vector<Move>& moves) {
   return text;
 }
 
-/// The last equilibrium before the first break or collapse.
-const Equilibrium& last_whole(const Raised& raised) {
-  const LoadBreak* first = first_break(raised);
-  const double held = first == nullptr ? 1e300 : first->held;
-  std::size_t last = 0;
-  for (std::size_t i = 0; i < raised.equilibria.size() && raised.equilibria[i].load <= held; ++i) last = i;
-  return raised.equilibria[last];
-}
-
 std::string member_table(const Raised& raised) {
   const Equilibrium& own = raised.equilibria.front();
   const Equilibrium& most = last_whole(raised);
@@ -68,8 +59,7 @@ std::string member_table(const Raised& raised) {
     const MemberForce& force = most.forces[rows[i]];
     text += text_of("%-24s %-5s %13.6g %13.6g %11.4g %11.4g", member.name.c_str(), word_of(member.kind),
                     own.forces[rows[i]].force, force.force, force.shear, force.moment);
-    text += member.strength > 0 || member.torque_strength > 0 ? text_of(" %5.1f%%\n", 100 * force.utilization)
-                                                              : "      -\n";
+    text += has_limit(member) ? text_of(" %5.1f%%\n", 100 * force.utilization) : "      -\n";
   }
   if (rows.size() > kMostRows)
     text += text_of("... and %zu more; --csv and --json list all\n", rows.size() - kMostRows);
@@ -96,6 +86,18 @@ std::string breaks_text(const Raised& raised) {
   return text;
 }
 
+std::string limit_text(const char* words, const std::optional<LoadLimit>& limit) {
+  if (!limit) return {};
+  if (!(limit->load > 0)) return text_of("%s'%s' without load\n", words, limit->member.c_str());
+  return text_of("%s'%s' at %.6g N (between the equilibria at %.6g and %.6g)\n", words, limit->member.c_str(),
+                 limit->at, limit->held, limit->load);
+}
+
+Json json_of_limit(const std::optional<LoadLimit>& limit) {
+  if (!limit) return nullptr;
+  return {{"member", limit->member}, {"at", limit->at}, {"held", limit->held}, {"load", limit->load}};
+}
+
 Json json_of_forces(const Raised& raised, const Equilibrium& equilibrium) {
   Json list = Json::array();
   for (std::size_t i = 0; i < raised.members.size(); ++i) {
@@ -108,7 +110,9 @@ Json json_of_forces(const Raised& raised, const Equilibrium& equilibrium) {
                 {"moment", force.moment}};
     if (member.strength > 0) one["strength"] = member.strength;
     if (member.torque_strength > 0) one["torque_strength"] = member.torque_strength;
-    if (member.strength > 0 || member.torque_strength > 0) one["utilization"] = force.utilization;
+    if (member.yield_force > 0) one["yield_force"] = member.yield_force;
+    if (member.buckling_force > 0) one["buckling_force"] = member.buckling_force;
+    if (has_limit(member)) one["utilization"] = force.utilization;
     if (force.broken) one["broken"] = true;
     list.push_back(std::move(one));
   }
@@ -131,11 +135,12 @@ double most_used(const Equilibrium& equilibrium) {
 
 std::optional<double> reserve_of(const Raised& raised, const LoadTitle& title) {
   if (!title.nominal) return {};
-  const double held = raised.equilibria.empty() ? 0 : raised.equilibria.back().load;
-  if (raised.collapse) return raised.collapse->held / *title.nominal;
-  const LoadBreak* first = first_break(raised);
-  const bool ended_there = first != nullptr && held <= first->held;
-  return (ended_there ? first->held : held) / *title.nominal;
+  double held = raised.equilibria.empty() ? 0 : raised.equilibria.back().load;
+  if (raised.collapse) held = raised.collapse->held;
+  for (const auto ratio : {&MemberForce::yielding, &MemberForce::buckling}) {
+    if (const auto limit = first_limit(raised, ratio)) held = std::min(held, limit->at);
+  }
+  return held / *title.nominal;
 }
 
 std::string load_summary(const Raised& raised, const LoadTitle& title) {
@@ -156,6 +161,8 @@ std::string load_summary(const Raised& raised, const LoadTitle& title) {
         "mechanism    it moved far until it found rest under its own weight:\n" + moves_text(raised.settling);
   }
   text += member_table(raised);
+  text += limit_text("first yield  ", first_limit(raised, &MemberForce::yielding));
+  text += limit_text("buckles      ", first_limit(raised, &MemberForce::buckling));
   text += breaks_text(raised);
   if (raised.collapse) {
     text += raised.collapse->ran ? "collapse     " : "restless     ";
@@ -163,7 +170,7 @@ std::string load_summary(const Raised& raised, const LoadTitle& title) {
             moves_text(raised.collapse->moves);
     if (!raised.collapse->ran)
       text += "  whether it holds is not known: more --patience or --substeps may tell\n";
-  } else if (first_break(raised) == nullptr || raised.equilibria.back().load >= title.most) {
+  } else if (raised.equilibria.back().load >= title.most) {
     text +=
         text_of("holds        %.6g N, the largest load that was asked for\n", raised.equilibria.back().load);
   }
@@ -212,6 +219,8 @@ std::string load_json(const Raised& raised, const LoadTitle& title) {
                           {"steps", one.steps},
                           {"members", json_of_forces(raised, one)}});
   }
+  report["first_yield"] = json_of_limit(first_limit(raised, &MemberForce::yielding));
+  report["first_buckling"] = json_of_limit(first_limit(raised, &MemberForce::buckling));
   Json& breaks = report["breaks"] = Json::array();
   for (const LoadBreak& one : raised.breaks) {
     breaks.push_back({{"object", one.object},

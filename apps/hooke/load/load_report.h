@@ -17,8 +17,8 @@ struct LoadTitle {
   double tolerance = 0;                ///< Relative width of an interval in which something breaks.
 };
 
-/// Returns the reserve factor: collapse load over nominal load, or that of the first break where the search
-/// ended there, or at least that of the largest load; nothing without a nominal load.
+/// Returns the reserve factor: the least of the loads of collapse, of first yield and of first buckling over
+/// the nominal load; where there was no collapse the largest load that held; nothing without a nominal load.
 [[nodiscard]] std::optional<double> reserve_of(const Raised& raised, const LoadTitle& title);
 
 /// Returns lines for people.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -20,6 +21,50 @@ constexpr double kOnePlace = 1e-4;
 double limit_of(Real limit) {
   const auto value = static_cast<double>(limit);
   return std::isfinite(value) ? value : 0;
+}
+
+/// Area of a section [m^2], and its least second moment [m^4]; 0 where it is not known.
+struct SectionMoments {
+  double area = 0;
+  double second = 0;
+};
+
+SectionMoments moments_of(const SceneSection& section) {
+  const auto value = [](const std::optional<Real>& number) {
+    return static_cast<double>(number.value_or(Real(0)));
+  };
+  if (section.area) return {value(section.area), value(section.second_moment)};
+  const double wall = value(section.thickness);
+  if (section.radius) {
+    const double outer = value(section.radius);
+    const double inner = wall > 0 ? outer - wall : 0;
+    return {std::numbers::pi * (outer * outer - inner * inner),
+            std::numbers::pi / 4 * (outer * outer * outer * outer - inner * inner * inner * inner)};
+  }
+  const double broad = std::max(value(section.width), value(section.height));
+  const double thin = std::min(value(section.width), value(section.height));
+  const double broad_hole = wall > 0 ? broad - 2 * wall : 0;
+  const double thin_hole = wall > 0 ? thin - 2 * wall : 0;
+  return {broad * thin - broad_hole * thin_hole,
+          (broad * thin * thin * thin - broad_hole * thin_hole * thin_hole * thin_hole) / 12};
+}
+
+/// Sets the forces at which a bar of this length [m] yields and buckles: A s, and Euler's pi^2 E I / (K L)^2.
+void set_limits(const SceneSection& section, const SceneMaterial& look, double length, Member& member) {
+  const SectionMoments moments = moments_of(section);
+  member.yield_force = moments.area * static_cast<double>(section.yield_stress.value_or(Real(0)));
+  const Real young = section.young_modulus.value_or(look.young_modulus.value_or(Real(0)));
+  const double free_length = static_cast<double>(section.length_factor) * length;
+  if (!(free_length > 0)) return;
+  member.buckling_force = std::numbers::pi * std::numbers::pi * static_cast<double>(young) * moments.second /
+                          (free_length * free_length);
+}
+
+/// Evaluates a force along a member [N], tension positive, by its section.
+void evaluate_section(const Member& member, MemberForce& force) {
+  if (member.yield_force > 0) force.yielding = std::abs(force.force) / member.yield_force;
+  if (member.buckling_force > 0) force.buckling = std::max(0.0, -force.force) / member.buckling_force;
+  force.utilization = std::max({force.utilization, force.yielding, force.buckling});
 }
 
 /// Makes the member of a hook or rope.
@@ -43,6 +88,8 @@ Member member_of(const Simulation& simulation, const SceneObject& object) {
   if (object.path.find("hooks[") != std::string::npos && row < all.hooks.size()) {
     member.strength = limit_of(all.hooks[row].desc.break_force);
     member.torque_strength = limit_of(all.hooks[row].desc.break_torque);
+    if (is_rod && all.hooks[row].section)
+      set_limits(*all.hooks[row].section, object.look, length(b - a), member);
   }
   return member;
 }
@@ -54,8 +101,8 @@ struct HeldPlace {
   bool on_b;
 };
 
-/// Returns the bar that a body is, if it is held at exactly two places.
-bool make_bar(const std::vector<HeldPlace>& held, Member& bar) {
+/// Returns the bar that a body is, if it is held at exactly two places, and its length [m].
+bool make_bar(const std::vector<HeldPlace>& held, Member& bar, double& bar_length) {
   DVec3 places[2];
   std::size_t count = 0;
   for (const HeldPlace& one : held) {
@@ -66,6 +113,7 @@ bool make_bar(const std::vector<HeldPlace>& held, Member& bar) {
     bar.ends[end].hooks.push_back(one.hook);
     bar.ends[end].on_b.push_back(one.on_b);
   }
+  if (count == 2) bar_length = length(places[1] - places[0]);
   return count == 2;
 }
 
@@ -91,6 +139,7 @@ MemberForce force_of_hook(const World& world, const Member& member, bool broken)
   if (member.kind == MemberKind::kRod && length(b - a) > 0) {
     result.force = -dot(vector_cast<double>(on_b.force), normalize(b - a));
     result.moment = 0;
+    evaluate_section(member, result);
   }
   return result;
 }
@@ -127,6 +176,7 @@ MemberForce force_of_bar(const World& world, const std::vector<Member>& members,
   result.force = 0.5 * (dot(pull[1], along) - dot(pull[0], along));
   for (const DVec3 force : pull)
     result.shear = std::max(result.shear, length(force - dot(force, along) * along));
+  evaluate_section(bar, result);
   return result;
 }
 
@@ -149,7 +199,12 @@ std::vector<Member> find_members(const Simulation& simulation) {
     Member bar;
     bar.name = object.name;
     bar.kind = MemberKind::kBar;
-    if (!make_bar(held[object.name], bar)) continue;
+    double bar_length = 0;
+    if (!make_bar(held[object.name], bar, bar_length)) continue;
+    std::size_t row = 0;
+    const SceneObjects& all = objects_of(simulation, object.path, row);
+    if (row < all.bodies.size() && all.bodies[row].section)
+      set_limits(*all.bodies[row].section, object.look, bar_length, bar);
     for (const BarEnd& end : bar.ends) {
       for (const std::size_t hook : end.hooks) {
         bar.strength = weaker(bar.strength, members[hook].strength);

@@ -60,6 +60,7 @@ class Raise {
       }
       grows = reached.value();
       if (reached.value()) load = next;
+      if (options_.until_limit && is_beyond_limit()) break;
     }
     return std::move(raised_);
   }
@@ -82,6 +83,13 @@ class Raise {
         .ends_at_break = true};
   }
 
+  /// Whether a member yields or buckles now.
+  [[nodiscard]] bool is_beyond_limit() const {
+    const std::vector<MemberForce> forces = member_forces(simulation_, raised_.members);
+    return std::any_of(forces.begin(), forces.end(),
+                       [](const MemberForce& one) { return std::max(one.yielding, one.buckling) >= 1; });
+  }
+
   void record(double load, const RestOutcome& outcome) {
     Equilibrium one = {.load = load,
                        .way = push_.place(simulation_.world()) - start_,
@@ -91,6 +99,7 @@ class Raise {
     raised_.largest_residual = std::max(raised_.largest_residual, one.residual);
     raised_.equilibria.push_back(std::move(one));
     held_ = simulation_.snapshot();
+    if (first_break(raised_) == nullptr) raised_.whole = held_;
     loose_ = movers_.loose();
   }
 
@@ -186,7 +195,8 @@ class Raise {
     if (!outcome) return outcome.error();
     raised_.steps += outcome.value().steps;
     const bool narrow = next - load <= finest(next) * (1 + 1e-9);
-    if (outcome.value().end == RestOutcome::End::kRest) {
+    const bool rests = outcome.value().end == RestOutcome::End::kRest;
+    if (rests && (narrow || !options_.until_limit || !is_beyond_limit())) {
       note(load, next, outcome.value());
       record(next, outcome.value());
       return true;
@@ -233,6 +243,36 @@ class Raise {
 };
 
 }  // namespace
+
+std::optional<LoadLimit> first_limit(const Raised& raised, double MemberForce::*ratio) {
+  for (std::size_t e = 0; e < raised.equilibria.size(); ++e) {
+    const Equilibrium& now = raised.equilibria[e];
+    std::optional<LoadLimit> first;
+    for (std::size_t i = 0; i < raised.members.size(); ++i) {
+      const double used = now.forces[i].*ratio;
+      if (!(used >= 1)) continue;
+      LoadLimit limit = {
+          .member = raised.members[i].name, .held = now.load, .load = now.load, .at = now.load};
+      if (e > 0) {
+        const Equilibrium& before = raised.equilibria[e - 1];
+        const double was = before.forces[i].*ratio;
+        limit.held = before.load;
+        limit.at = before.load + (1 - was) / (used - was) * (now.load - before.load);
+      }
+      if (!first || limit.at < first->at) first = std::move(limit);
+    }
+    if (first) return first;
+  }
+  return {};
+}
+
+const Equilibrium& last_whole(const Raised& raised) {
+  const LoadBreak* first = first_break(raised);
+  const double held = first == nullptr ? 1e300 : first->held;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < raised.equilibria.size() && raised.equilibria[i].load <= held; ++i) last = i;
+  return raised.equilibria[last];
+}
 
 const LoadBreak* first_break(const Raised& raised) {
   for (const LoadBreak& one : raised.breaks) {

@@ -18,6 +18,7 @@ struct RaiseOptions {
   double way = 0;            ///< A loaded place that moves farther in one step of the load has collapsed [m].
   double patience = 30;      ///< Time to come to rest in, for each step of the load [s].
   bool until_break = false;  ///< Whether to end at the first break.
+  bool until_limit = false;  ///< Whether to end where the first member yields or buckles, too.
 };
 
 /// One equilibrium.
@@ -37,6 +38,14 @@ struct LoadBreak {
   double held = 0;   ///< Largest load that held before [N].
   double load = 0;   ///< Load at which it broke [N]; 0 if its weight did it.
   double share = 1;  ///< Share of the weight that acted.
+};
+
+/// Where a member first reached a limit of its section.
+struct LoadLimit {
+  std::string member;
+  double held = 0;  ///< Load of the last equilibrium before [N].
+  double load = 0;  ///< Load of the first equilibrium beyond [N]; equal to `held` if it is so without load.
+  double at = 0;    ///< The load between, by linear interpolation of the utilization [N].
 };
 
 /// How the search for an equilibrium ended without one.
@@ -63,7 +72,14 @@ struct Raised {
   std::uint64_t steps = 0;                 ///< Steps in all, with those taken back.
   double weight = 0;                       ///< Weight of all that moves [N].
   double largest_residual = 0;             ///< Of all equilibria [N].
+  SimulationSnapshot whole = {};  ///< State at the last equilibrium before the first break by the load.
 };
+
+/// Finds where the first member reached 1 of a ratio, MemberForce::yielding or MemberForce::buckling; the
+/// member that did so at the least load.
+[[nodiscard]] std::optional<LoadLimit> first_limit(const Raised& raised, double MemberForce::*ratio);
+/// The last equilibrium before the first break by the load; there is one at least.
+[[nodiscard]] const Equilibrium& last_whole(const Raised& raised);
 
 /// Returns the first thing that broke by the load; null if nothing did. What broke without any does not
 /// count.

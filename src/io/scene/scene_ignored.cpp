@@ -82,6 +82,7 @@ void IgnoredKeys::check(const SceneBody& body, const std::string& path) {
     ignore(inner, {"impact_radius"}, body.fracture->desc.seeds.empty() && !body.fracture->desc.impact,
            "it is for 'impact'");
   }
+  ignore(path, {"section"}, desc.kind != BodyKind::kDynamic, "a bar is a dynamic body between two hooks");
   if (desc.kind != BodyKind::kDynamic) return;
   ignore(path, {"density"}, !body.parts.empty(), "its parts have their own");
   ignore(path, {"density"}, body.parts.empty() && desc.mass.has_value(), "'mass' replaces it");
@@ -147,7 +148,7 @@ void IgnoredKeys::check(const SceneHook& hook, const std::string& path) {
   ignore(path + ".spring", {"target"}, kind == HookKind::kBall && desc.spring != HookSpring{},
          "a ball's spring is towards how things stood");
   ignore(path, {"cone"}, kind != HookKind::kBall, "it is for a ball");
-  ignore(path, {"anchor_b"}, kind != HookKind::kDistance, "it is for a distance");
+  ignore(path, {"anchor_b", "section"}, kind != HookKind::kDistance, "it is for a distance");
   ignore(path, {"steering"}, kind != HookKind::kWheel, "it is for a wheel");
   ignore(path, {"freedoms"}, kind != HookKind::kSixDegrees, "it is for six_degrees");
   const bool has_axis =

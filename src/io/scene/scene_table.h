@@ -75,6 +75,8 @@ const Kind& kind_of<SceneFracture>();
 template <>
 const Kind& kind_of<SceneBlade>();
 template <>
+const Kind& kind_of<SceneSection>();
+template <>
 const Kind& kind_of<ScenePair>();
 template <>
 const Kind& kind_of<SceneHook>();

@@ -3,6 +3,8 @@
 #include "io/scene/scene_table.h"
 #include "io/scene/scene_table_tags.h"
 
+#include <algorithm>
+
 namespace hooke::io {
 
 namespace {
@@ -122,6 +124,10 @@ std::vector<Field> body_rows() {
           "the hooks `name_glue[0]`, ..."),
       field<&SceneBody::blade>(
           "blade", "", kAny, "Makes a kinematic body cut the ropes, cloths and solids that its edge sweeps."),
+      field<&SceneBody::section>(
+          "section", "", kAny,
+          "Cross section of a bar, which two hooks hold: `hooke load` then tells where it "
+          "yields and buckles. It changes no motion."),
       field<&SceneBody::visual>("visual", "", kNotEmpty,
                                 "What is drawn in place of the shape: a name in `meshes`."),
       field<kDesc, &BodyDesc::kind>("kind", "", kAny,
@@ -167,6 +173,24 @@ bool check_blade(Reader& reader, const JsonNode& node, const SceneBody& body) {
     return reader.fail(node, ErrorCode::kOutOfRange, "'blade' is for a kinematic body, which nothing stops");
   if (length(body.blade->edge[1] - body.blade->edge[0]) > Real(0)) return true;
   return reader.fail(node, ErrorCode::kOutOfRange, "the two ends of the 'edge' of 'blade' must not be equal");
+}
+
+/// A section is told in one way, and has a hole that fits.
+bool check_section(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& section = *static_cast<const SceneSection*>(object);
+  const auto refuse = [&](const char* why) { return reader.fail(node, ErrorCode::kOutOfRange, why); };
+  const bool is_box = section.width || section.height;
+  if ((section.area ? 1 : 0) + (section.radius ? 1 : 0) + (is_box ? 1 : 0) != 1)
+    return refuse("needs one of 'area', 'radius', and 'width' with 'height'");
+  if (is_box && !(section.width && section.height)) return refuse("needs both 'width' and 'height'");
+  if (section.second_moment && !section.area)
+    return refuse("'second_moment' is for 'area'; a shape has its own");
+  if (!section.thickness) return true;
+  if (section.area) return refuse("'thickness' is for a shape, not for 'area'");
+  const Real inside =
+      section.radius ? *section.radius : Real(0.5) * std::min(*section.width, *section.height);
+  if (*section.thickness < inside) return true;
+  return refuse("'thickness' must be below half of the section; leave it out for a solid one");
 }
 
 /// A body that is to break is one that moves, and whose inside is known.
@@ -235,6 +259,34 @@ const Kind& kind_of<SceneBlade>() {
 }
 
 template <>
+const Kind& kind_of<SceneSection>() {
+  static const Kind kind = {
+      .name = "section",
+      .help =
+          "Cross section of a bar: its `area`, also with `second_moment`; or its shape, by `radius`, or "
+          "`width` and "
+          "`height`; hollow with a `thickness`.",
+      .fields = {field<&SceneSection::area>("area", "m^2", kPositive, "Of the section."),
+                 field<&SceneSection::second_moment>("second_moment", "m^4", kPositive,
+                                                     "Of area, the least one; without it nothing buckles."),
+                 field<&SceneSection::radius>("radius", "m", kPositive, "Of a round bar or tube, outside."),
+                 field<&SceneSection::width>("width", "m", kPositive, "Of a rectangle, outside."),
+                 field<&SceneSection::height>("height", "m", kPositive, "Of a rectangle, outside."),
+                 field<&SceneSection::thickness>("thickness", "m", kPositive,
+                                                 "Of the wall of a tube or box."),
+                 field<&SceneSection::young_modulus>("young_modulus", "Pa", kPositive,
+                                                     "E; that of the material by default."),
+                 field<&SceneSection::yield_stress>("yield_stress", "Pa", kPositive,
+                                                    "Force over area at which it yields."),
+                 field<&SceneSection::length_factor>("length_factor", "", between(0.1, 10),
+                                                     "K of Euler's load pi^2 E I / (K L)^2: 1 for hinged "
+                                                     "ends, 0.5 for clamped, 2 for a free end.")},
+      .defaults = defaults_of<SceneSection>,
+      .check = check_section};
+  return kind;
+}
+
+template <>
 const Kind& kind_of<ScenePart>() {
   constexpr auto kDesc = &ScenePart::desc;
   static const Kind kind = {
@@ -284,10 +336,10 @@ const Kind& kind_of<ScenePair>() {
 
 std::span<const Kind* const> body_kinds() {
   static const Kind* const kinds[] = {
-      &kind_of<SceneBody>(), &shape_kind(),         &BodyShape::half_space(), &BodyShape::sphere(),
-      &BodyShape::box(),     &BodyShape::capsule(), &BodyShape::cylinder(),   &BodyShape::cone(),
-      &kind_of<ScenePart>(), &part_shape_kind(),    &kind_of<ScenePair>(),    &kind_of<SceneFracture>(),
-      &kind_of<SceneBlade>()};
+      &kind_of<SceneBody>(),  &shape_kind(),           &BodyShape::half_space(), &BodyShape::sphere(),
+      &BodyShape::box(),      &BodyShape::capsule(),   &BodyShape::cylinder(),   &BodyShape::cone(),
+      &kind_of<ScenePart>(),  &part_shape_kind(),      &kind_of<ScenePair>(),    &kind_of<SceneFracture>(),
+      &kind_of<SceneBlade>(), &kind_of<SceneSection>()};
   return kinds;
 }
 

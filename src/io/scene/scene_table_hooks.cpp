@@ -89,6 +89,10 @@ std::vector<Field> hook_rows() {
       field<kDesc, &HookDesc::break_torque>("break_torque", "N m", kPositiveOrRigid,
                                             "The same of its torque."),
       field<kDesc, &HookDesc::collide>("collide", "", kAny, "Whether the two bodies may touch each other."),
+      field<&SceneHook::section>(
+          "section", "", kAny,
+          "Cross section of a distance that is a bar: `hooke load` then tells where it yields "
+          "and buckles. It changes no motion."),
       field<&SceneHook::array>(
           "array", "", kAny,
           "Copies, named `name[0]`, ... Copy i holds copy i of `a` and `b`, counted from "
