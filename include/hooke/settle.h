@@ -87,6 +87,7 @@ enum class SettleEnd : std::uint8_t {
   kStill,     ///< Nothing moves as far as the drift in a second; forces balance less well than asked.
   kBroke,  ///< Something broke or tore in the last step, as World::events() tells; nothing was stopped then.
   kOutOfTime,  ///< There was no rest.
+  kDiverged,   ///< Something was no longer finite in the last step, which StepReport counts as quarantined.
 };
 
 /// What settling came to.

@@ -50,8 +50,11 @@ Relaxation::Relaxation(Simulation& simulation, Movers& movers, const Push& push)
 
 Result<void> Relaxation::step(double load) {
   if (auto pushed = push_->apply(simulation_->world(), load); !pushed) return pushed;
-  if (simulation_->step().moved) return {};
-  return Error{ErrorCode::kOutOfRange, simulation_->scene().path, "the step did not move"};
+  const StepReport stepped = simulation_->step();
+  if (stepped.healthy()) return {};
+  return Error{ErrorCode::kOutOfRange, simulation_->scene().path,
+               stepped.moved ? "what moves is no longer finite: more --substeps, or heavier joints, may help"
+                             : "the step did not move"};
 }
 
 bool Relaxation::settles(Attempt& attempt, const RestRules& rules) {

@@ -63,7 +63,7 @@ SceneJson json_of_point(DVec3 v) {
 }
 
 const char* end_word(SettleEnd end) {
-  static constexpr const char* kWords[] = {"balanced", "still", "broke", "out of time"};
+  static constexpr const char* kWords[] = {"balanced", "still", "broke", "out of time", "diverged"};
   return kWords[static_cast<std::size_t>(end)];
 }
 
@@ -121,6 +121,8 @@ std::string settle_text(const Simulation& simulation, const SettleReport& found)
       return "no rest: " + what +
              text_of(" broke after %llu steps; it needs more strength, or support", steps);
     }
+    case SettleEnd::kDiverged:
+      return text_of("no rest: what moves is no longer finite after %llu steps; more --substeps may help", steps);
     case SettleEnd::kOutOfTime:
       break;
   }

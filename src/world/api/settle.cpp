@@ -246,7 +246,12 @@ Result<SettleReport> World::settle(const SettleDesc& desc) {
     const Undisturbed undisturbed(data_);
     std::vector<DVec3> places = places_of(data_->tables);
     for (bool ended = false; !ended && watch.steps() < steps;) {
-      if (!step(desc.dt).moved) return Error{ErrorCode::kOutOfRange, "settle", "a step did not move"};
+      const StepReport stepped = step(desc.dt);
+      if (!stepped.moved) return Error{ErrorCode::kOutOfRange, "settle", "a step did not move"};
+      if (!stepped.healthy()) {
+        report.end = SettleEnd::kDiverged;
+        break;
+      }
       report.unrest = unrest(dt);
       const bool broke = anything_broke(events());
       const RestWatch::Verdict verdict = watch.observe(report.unrest, broke);
