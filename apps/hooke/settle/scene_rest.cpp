@@ -122,7 +122,8 @@ std::string settle_text(const Simulation& simulation, const SettleReport& found)
              text_of(" broke after %llu steps; it needs more strength, or support", steps);
     }
     case SettleEnd::kDiverged:
-      return text_of("no rest: what moves is no longer finite after %llu steps; more --substeps may help", steps);
+      return text_of("no rest: what moves is no longer finite after %llu steps; more --substeps may help",
+                     steps);
     case SettleEnd::kOutOfTime:
       break;
   }
