@@ -2,6 +2,7 @@
 #include "hooke/compare/stage.h"
 #include "hooke/output_file.h"
 #include "hooke/progress.h"
+#include "hooke/report/run_page.h"
 #include "hooke/run_laboratory.h"
 #include "hooke/run_report.h"
 #include "hooke/settle/scene_rest.h"
@@ -21,6 +22,7 @@ struct RunOptions {
   SceneOverrides overrides;
   std::string csv;
   std::string json;
+  std::string page;
   bool hash = false;
   std::uint64_t hash_every = 0;  ///< Steps between hashes; 0 stands for never.
   std::string stepper;           ///< Method of the laboratory; empty for the solver.
@@ -41,6 +43,9 @@ void describe(CLI::App& app, RunOptions& options) {
       "scene's accuracy chooses");
   app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
       ->needs(stepper);
+  app.add_option("--report", options.page,
+                 "Write a page of HTML: promises, what broke, forces on supports, plots, warnings")
+      ->excludes(stepper);
   app.add_flag("--hash", options.hash, "Print only the hash of the last state")->excludes(stepper);
   app.add_option("--hash-every", options.hash_every, "Print step and hash after every so many steps")
       ->check(CLI::PositiveNumber)
@@ -76,6 +81,8 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
   }
   record.start = simulation.world().measure().energy;
   RunWatch watch(simulation);
+  std::optional<RunSeries> series;
+  if (!options.page.empty()) series.emplace(simulation, steps);
   Progress progress("simulating", steps);
   for (std::uint64_t i = 0; i < steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -86,6 +93,7 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     record.last = step;
     note_refused(step, record.worst);
     watch.look(simulation, step);
+    if (series) series->look(simulation, step.contacts);
     if (csv) csv->write(csv_line(simulation.world(), step.contacts));
     if (options.hash_every > 0 && (i + 1) % options.hash_every == 0) {
       std::printf("%s %s\n", std::to_string(i + 1).c_str(),
@@ -95,6 +103,10 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
   }
   record.problems = watch.warnings();
   for (const RunWarning& problem : record.problems) record.warnings.push_back(problem.line());
+  if (series) {
+    auto written = write_file(options.page, run_page(simulation, record, *series));
+    if (!written) return written;
+  }
   if (csv) return csv->finish();
   return {};
 }

@@ -66,8 +66,7 @@ bool passed(const Simulation& simulation) {
          std::all_of(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.passed; });
 }
 
-/// Returns the hooks that broke, the ropes that snapped and what tore or was cut, in the order of time.
-static std::vector<const SceneObject*> broken_objects(const Simulation& simulation) {
+std::vector<const SceneObject*> broken_objects(const Simulation& simulation) {
   std::vector<const SceneObject*> broken;
   for (const SceneObject& object : simulation.objects()) {
     if (object.broken) broken.push_back(&object);

@@ -39,6 +39,9 @@ void note_refused(const StepReport& step, StepReport& worst);
 /// Tells whether no expectation that was due failed, and no event.
 bool passed(const Simulation& simulation);
 
+/// Returns the hooks that broke, the ropes that snapped and what tore or was cut, in the order of time.
+std::vector<const SceneObject*> broken_objects(const Simulation& simulation);
+
 /// Returns one JSON object, with a line break at its end.
 std::string run_json(const Simulation& simulation, const RunRecord& record);
 

@@ -94,6 +94,25 @@ class Run(Program):
         for key in [*report, *report["routes"], *report["refused"]]:
             self.assertIn(f"`{key}`", page)
 
+    def test_a_page_tells_of_a_run_without_any_other_file(self):
+        scene = copy.deepcopy(FALLING)
+        scene["title"] = "A <ball> & a bar"
+        scene["bodies"] = [{"name": "bar", "kind": "dynamic", "mass": 10, "position": [0, 4.5, 0],
+                            "shape": {"box": {"half_extents": [0.1, 0.5, 0.1]}}}]
+        scene["hooks"] = [{"name": "pin", "kind": "ball", "b": "bar", "anchor": [0, 5, 0]},
+                          {"name": "weak", "kind": "ball", "b": "bar", "anchor": [0.1, 5, 0], "break_force": 1e-9}]
+        self.hooke("run", self.scene(scene), "--report", "page.html")
+        page = (self.folder / "page.html").read_text()
+        self.assertIn("<h1>A &lt;ball&gt; &amp; a bar</h1>", page)
+        self.assertRegex(page, r'<li class="pass">pass .*expect\[0\]')
+        self.assertRegex(page, r"<tr><td>weak \(first\)</td>")
+        force = re.search(r"<tr><td>pin</td><td>(\S+) (\S+) (\S+)</td>", page)
+        self.assertAlmostEqual(float(force[2]), 98.1, delta=0.1)
+        self.assertEqual(page.count("<svg"), 4)
+        self.assertEqual(page.count("<polyline"), 7)
+        self.assertNotRegex(page, r"(?:src|href)=|nan|inf\b")
+        self.hooke("run", "scene.json", "--report", "none/page.html", code=3)
+
     def test_a_report_that_cannot_be_written_is_refused_before_the_run(self):
         scene = self.scene(FALLING | {"seconds": 1e6})  # minutes
         start = time.monotonic()
