@@ -107,6 +107,10 @@ Rows free_precession(const CheckSetting& setting);
 Rows sleeping_top(const CheckSetting& setting);
 Rows isolated_bodies(const CheckSetting& setting);
 
+// tears.cpp has cloth that tears, and surfaces that must not cross.
+Rows torn_sheets(const CheckSetting& setting);
+Rows surfaces_that_never_cross(const CheckSetting& setting);
+
 // trusses.cpp has structures of hooks.
 Rows trusses(const CheckSetting& setting);
 

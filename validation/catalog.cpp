@@ -91,7 +91,7 @@ std::vector<CheckCase> cases_of_bodies() {
   };
 }
 
-/// These are V62 to V77: rods, jelly and cloth.
+/// These are V62 to V79: rods, jelly and cloth.
 std::vector<CheckCase> cases_of_soft_matter() {
   return {
       {"V62", "Cantilevers", cantilevers},
@@ -110,6 +110,8 @@ std::vector<CheckCase> cases_of_soft_matter() {
       {"V75", "Drape of a disc", cusick_drape},
       {"V76", "Picture frame", picture_frame, 0, 0, kOnlyInPlane},
       {"V77", "Flag in steady wind", flag_flutter},
+      {"V78", "Tears", torn_sheets},
+      {"V79", "Surfaces that never cross", surfaces_that_never_cross},
   };
 }
 

@@ -1,6 +1,6 @@
 #include "hooke/scene_io.h"
 
-#include "world/crossings.h"
+#include "validation/crossings.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 #include <vector>
 
 /// Scenes whose cloths, jellies and ropes touch each other, judged in every frame by the checker of
-/// world/crossings.h, which shares no code with the engine. Cloths that are sewn together cross along their
-/// seam: no scene here has any.
+/// validation/crossings.h, which shares no code with the engine. Cloths that are sewn together cross along
+/// their seam: no scene here has any.
 
 namespace hooke {
 namespace {

@@ -1,6 +1,6 @@
 #include "hooke/hooke.h"
 
-#include "world/crossings.h"
+#include "validation/crossings.h"
 #include "world/make.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <vector>
 
 /// Bodies and deformables pass through each other at no speed and at no size. Crossings are counted by a
-/// checker of its own (world/crossings.h), with meshes that lie within the shapes.
+/// checker of its own (validation/crossings.h), with meshes that lie within the shapes.
 
 namespace hooke {
 namespace {

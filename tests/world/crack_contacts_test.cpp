@@ -1,6 +1,6 @@
 /// Cloth that is cut or torn and touches itself: the sides of a crack never pass each other.
 
-#include "world/crossings.h"
+#include "validation/crossings.h"
 #include "world/make.h"
 
 #include <cstddef>

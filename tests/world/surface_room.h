@@ -2,7 +2,7 @@
 
 #include "hooke/hooke.h"
 
-#include "world/crossings.h"
+#include "validation/crossings.h"
 
 #include <algorithm>
 #include <cmath>

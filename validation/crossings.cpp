@@ -1,4 +1,4 @@
-#include "world/crossings.h"
+#include "validation/crossings.h"
 
 #include <algorithm>
 #include <cmath>
