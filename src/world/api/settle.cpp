@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace hooke {
 
@@ -183,6 +185,37 @@ bool anything_broke(const Events& events) {
          !events.solid_tears.empty();
 }
 
+/// Steps until there is rest, or none to be had, and says in the report which. The tables are those of the
+/// world.
+Result<void> relax(World& world, const Tables& tables, Real dt, const RestWatch::Limits& limits,
+                   SettleReport& report) {
+  const auto second = static_cast<std::uint64_t>(std::max(1.0, std::round(1 / static_cast<double>(dt))));
+  RestWatch watch(limits);
+  std::vector<DVec3> places = places_of(tables);
+  while (watch.steps() < limits.steps) {
+    const StepReport stepped = world.step(dt);
+    if (!stepped.moved) return Error{ErrorCode::kOutOfRange, "settle", "a step did not move"};
+    report.unrest = world.unrest(static_cast<double>(dt));
+    report.end = SettleEnd::kOutOfTime;
+    const bool broke = anything_broke(world.events());
+    const RestWatch::Verdict verdict = watch.observe(report.unrest, broke);
+    report.steps = watch.steps();
+    if (verdict == RestWatch::Verdict::kAtRest) report.end = SettleEnd::kBalanced;
+    if (broke) report.end = SettleEnd::kBroke;
+    if (!stepped.healthy()) report.end = SettleEnd::kDiverged;
+    if (report.end != SettleEnd::kOutOfTime) return {};
+    if (verdict == RestWatch::Verdict::kPeak) (void)world.stop({});
+    if (watch.steps() % second != 0) continue;
+    std::vector<DVec3> now = places_of(tables);
+    if (watch.is_still(farthest_between(now, places))) {
+      report.end = SettleEnd::kStill;
+      return {};
+    }
+    places = std::move(now);
+  }
+  return {};
+}
+
 }  // namespace
 
 Unrest World::unrest(double dt, const LeftOut& left_out) const {
@@ -234,40 +267,17 @@ Result<SettleReport> World::settle(const SettleDesc& desc) {
     if (auto checked = check_settling(desc, weight); !checked) return checked.error();
   }
   const double scale = desc.force > 0 ? desc.force : weight;
-  const auto dt = static_cast<double>(desc.dt);
-  const auto steps = static_cast<std::uint64_t>(std::max(1.0, std::round(desc.seconds / dt)));
-  const auto second = static_cast<std::uint64_t>(std::max(1.0, std::round(1 / dt)));
+  const double steps = std::round(desc.seconds / static_cast<double>(desc.dt));
+  const RestWatch::Limits limits = {.residual = desc.residual * scale,
+                                    .speed = std::numeric_limits<double>::infinity(),
+                                    .drift = desc.drift,
+                                    .steps = static_cast<std::uint64_t>(std::max(1.0, steps))};
   SettleReport report;
-  RestWatch watch({.residual = desc.residual * scale,
-                   .speed = std::numeric_limits<double>::infinity(),
-                   .drift = desc.drift,
-                   .steps = steps});
   {
-    const Undisturbed undisturbed(data_);
-    std::vector<DVec3> places = places_of(data_->tables);
-    for (bool ended = false; !ended && watch.steps() < steps;) {
-      const StepReport stepped = step(desc.dt);
-      if (!stepped.moved) return Error{ErrorCode::kOutOfRange, "settle", "a step did not move"};
-      if (!stepped.healthy()) {
-        report.end = SettleEnd::kDiverged;
-        break;
-      }
-      report.unrest = unrest(dt);
-      const bool broke = anything_broke(events());
-      const RestWatch::Verdict verdict = watch.observe(report.unrest, broke);
-      if (broke || verdict == RestWatch::Verdict::kAtRest) {
-        report.end = broke ? SettleEnd::kBroke : SettleEnd::kBalanced;
-        break;
-      }
-      if (verdict == RestWatch::Verdict::kPeak) (void)stop({});
-      if (watch.steps() % second != 0) continue;
-      std::vector<DVec3> now = places_of(data_->tables);
-      ended = watch.is_still(farthest_between(now, places));
-      if (ended) report.end = SettleEnd::kStill;
-      places = std::move(now);
-    }
+    const std::shared_ptr<WorldData> data = data_;
+    const Undisturbed undisturbed(data);
+    if (auto relaxed = relax(*this, data->tables, desc.dt, limits, report); !relaxed) return relaxed.error();
   }
-  report.steps = watch.steps();
   report.residual = report.unrest.residual / scale;
   report.sum = report.unrest.sum / scale;
   if (report.end != SettleEnd::kBroke) (void)stop({});
