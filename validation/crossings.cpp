@@ -224,6 +224,12 @@ bool pass(const Ends& from, const Ends& to) {
   return false;
 }
 
+/// Where the ends of two edges are.
+Ends ends_of(const Surfaces& s, const std::array<std::uint32_t, 2>& one,
+             const std::array<std::uint32_t, 2>& other) {
+  return {s.points[one[0]], s.points[one[1]], s.points[other[0]], s.points[other[1]]};
+}
+
 }  // namespace
 
 int exact_orientation(DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
@@ -267,6 +273,7 @@ Crossings count_crossings(const Surfaces& surfaces) {
 std::size_t count_passes(const Surfaces& before, const Surfaces& after) {
   const std::vector<std::array<std::uint32_t, 2>> edges = edges_of(before);
   std::vector<Bounds> bounds;
+  bounds.reserve(edges.size());
   for (const auto& [p, q] : edges)
     bounds.push_back(bounds_of({before.points[p], before.points[q], after.points[p], after.points[q]}));
   const auto is_line = [&](const std::array<std::uint32_t, 2>& edge) {
@@ -281,10 +288,7 @@ std::size_t count_passes(const Surfaces& before, const Surfaces& after) {
       if (are_apart(bounds[i], bounds[j]) || a == c || a == d || b == c || b == d) continue;
       if (!before.owners.empty() && before.owners[a] == before.owners[c]) continue;
       if (j < i && is_line(edges[j])) continue;  // It was looked at as the first one.
-      const auto ends = [&](const Surfaces& s) {
-        return Ends{s.points[a], s.points[b], s.points[c], s.points[d]};
-      };
-      if (pass(ends(before), ends(after))) ++count;
+      if (pass(ends_of(before, edges[i], edges[j]), ends_of(after, edges[i], edges[j]))) ++count;
     }
   }
   return count;
