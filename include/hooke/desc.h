@@ -179,6 +179,31 @@ struct PartDesc {
   ContactDesc contact = {};   ///< Surface of the part.
 };
 
+/// What a rigid body becomes where it is hit hard: a soft solid in the same place, with the same mass,
+/// momentum and angular momentum, that dents for good, and a rigid body again, of its new shape, once it has
+/// come to rest in itself. docs/decisions/0050-rigid-to-soft-and-back.md says how.
+///
+/// Such a body is dynamic, collides, has one shape that is no compound, and a `gravity_scale` of 1. Hooks
+/// hold it by ball, hinge, fixed, distance or rope_slide; while it is soft, hinges and fixed hooks hold it by
+/// two and three balls, and their limits, springs and motors rest. So do its damping, drag and lift.
+struct YieldsDesc {
+  /// Impulse along contact normals [N s], positive: the body yields in the step in which one other object
+  /// gives it more. What merely lies on it gives it its weight times the length of a step.
+  Real impulse = Real(100);
+  /// Size of the cells of the solid, about [m], not negative; a tenth of the longest side with 0. A box has a
+  /// whole number of cells along each side.
+  Real cell = Real(0);
+  Real young_modulus = Real(1e7);  ///< SolidDesc::young_modulus of the solid [Pa].
+  Real poisson_ratio = Real(0.3);  ///< SolidDesc::poisson_ratio of the solid.
+  Real damping = Real(0.005);      ///< SolidDesc::damping of the solid [s].
+  Real yield_stress = Real(1e5);   ///< SolidDesc::yield_stress of the solid [Pa]; with kRigid no dent stays.
+  Real thickness = Real(0.002);    ///< SolidDesc::thickness of the solid [m].
+  /// Speed of its fastest point, relative to the motion of the whole as a rigid body, below which it counts
+  /// as at rest in itself [m/s]. Positive.
+  Real freeze_below = Real(0.05);
+  Real freeze_after = Real(0.25);  ///< Time at rest in itself after which it is rigid again [s]. [0, 1e6]
+};
+
 /// A rigid body. The volume of its shapes gives its mass, its center and its inertia.
 struct BodyDesc {
   BodyKind kind = BodyKind::kStatic;  ///< What moves the body.
@@ -215,6 +240,8 @@ struct BodyDesc {
   /// Path of the body's center from where it starts, for kKinematic. The body turns by `angular_velocity`.
   MotionDesc motion = {};
   std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for places in the body's frame.
+  /// What it becomes where it is hit hard; it stays rigid by default.
+  std::optional<YieldsDesc> yields = {};
 };
 
 /// What a hook holds on one side: a body, or a point of a rope, cloth, solid or group of particles, or the

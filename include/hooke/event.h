@@ -81,6 +81,24 @@ struct SolidTearEvent {
   double time = 0;          ///< Time of the world at the end of the step [s].
 };
 
+/// A body that became soft because something gave it more than YieldsDesc::impulse.
+struct YieldEvent {
+  BodyId body = {};        ///< The body; its id stays valid.
+  SolidId solid = {};      ///< The solid that it is now (World::soft_form).
+  DVec3 place = {};        ///< Where it was hit hardest [m].
+  Real impulse = Real(0);  ///< Impulse along the normal that it would have got in this step, so far [N s].
+  double time = 0;         ///< Time of the world at the end of the substep in which that was too much [s].
+};
+
+/// A body that was soft and became rigid again, with its new shape.
+struct FreezeEvent {
+  BodyId body = {};        ///< The body.
+  SolidId solid = {};      ///< The solid that it was; its id is stale.
+  DVec3 place = {};        ///< Center of mass of the body [m].
+  Real impulse = Real(0);  ///< The impulse of its YieldEvent [N s].
+  double time = 0;         ///< Time of the world at the end of the step [s].
+};
+
 /// All events of one step. Lists of bodies are in the order of the bodies' creation, and the same for any
 /// number of workers. A body that was removed while it touched something, or was in a sensor, ends that in
 /// the next step; its id is stale by then.
@@ -99,6 +117,8 @@ struct Events {
   std::vector<RopeBreakEvent> rope_breaks;
   std::vector<ClothTearEvent> tears;        ///< Points of cloths that split, in order of cloths' creation.
   std::vector<SolidTearEvent> solid_tears;  ///< Points of solids that split, likewise.
+  std::vector<YieldEvent> yields;    ///< Bodies that became soft, in order of time, then of their creation.
+  std::vector<FreezeEvent> freezes;  ///< Bodies that became rigid again, in order of their creation.
 };
 
 }  // namespace hooke

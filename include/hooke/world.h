@@ -339,7 +339,8 @@ class World {
 
   ///@{
   /// Removes an object, and returns whether there was one; false for an id that is stale or null, and during
-  /// a step. A mesh in use stays with those that use it. The hooks of an object go with it.
+  /// a step. A mesh in use stays with those that use it. The hooks of an object go with it. A solid that is
+  /// the soft form of a body goes with the body, and the body with it.
   bool remove(MeshId id);
   bool remove(BodyId id);
   bool remove(HookId id);
@@ -449,6 +450,20 @@ class World {
   [[nodiscard]] std::vector<DVec3> surface(SolidId id) const;
   /// Lists the triangles of a solid's surface(), as indices into it, counter-clockwise seen from outside.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(SolidId id) const;
+  /// The solid that a body is now because it was hit hard (BodyDesc::yields); null for one that is rigid. Its
+  /// points can be read, pushed and hooked until the body freezes.
+  [[nodiscard]] SolidId soft_form(BodyId id) const;
+  /// The body that a solid is the soft form of; null for other solids.
+  [[nodiscard]] BodyId body_of(SolidId id) const;
+  ///@{
+  /// The surface of a body with BodyDesc::yields as it is now, rigid or soft, in the world [m], and its
+  /// triangles, as surface() and triangles() of a solid. The triangles never change. Empty for other bodies.
+  [[nodiscard]] std::vector<DVec3> surface(BodyId id) const;
+  [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(BodyId id) const;
+  ///@}
+  /// Whether a body has a dent, or is soft: its shape is then surface(), and no longer that of its
+  /// description.
+  [[nodiscard]] bool is_reshaped(BodyId id) const;
   /// Volume of a solid's tetrahedra, or inside its surface if it has none [m^3]. A tetrahedron that is inside
   /// out counts negative.
   [[nodiscard]] double volume(SolidId id) const;

@@ -5,6 +5,7 @@
 #include "build/build.h"
 #include "build/checks.h"
 #include "build/connection_points.h"
+#include "build/soft_forms.h"
 #include "geometry/convex/mass_properties.h"
 #include "state/body_frames.h"
 #include "state/sleeping_pairs.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace hooke::build {
@@ -233,6 +235,7 @@ void make_room_for_body(Tables& t, std::size_t colliders) {
   make_room(t.bodies, 1);
   make_room(t.colliders, colliders);
   base::make_room(t.moving_bodies);
+  base::make_room(t.yielding);
 }
 
 std::uint32_t take_body_row(Tables& t) {
@@ -301,6 +304,15 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
   return traits;
 }
 
+/// Makes what a body becomes when it yields; its row is not set. A form that could be no solid is refused.
+Result<state::Yielding> prepare_yielding(const BodyDesc& desc, const state::BodyMass& mass, const Tables& t) {
+  const auto form = make_soft_form(desc, mass, t);
+  if (!form) return form.error();
+  const Result<void> good = validate_soft_form(*form.value(), *desc.yields);
+  if (!good) return good.error();
+  return state::Yielding{.desc = *desc.yields, .form = form.value()};
+}
+
 }  // namespace
 
 Result<ColliderShape> make_shape(const Shape& shape, const std::string& where, const Tables& t) {
@@ -358,6 +370,9 @@ Result<void> validate(const BodyDesc& body) {
     check_surface(parts[i].contact, prefix + "contact.", checks);
   }
   if (!checks.good()) return checks.result();
+  if (body.yields) {
+    if (const Result<void> good = validate_yields(body); !good) return good;
+  }
   Result<void> motion = validate(body.motion, "body.motion");
   return motion;
 }
@@ -369,6 +384,12 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   if (!made) return made.error();
   const std::vector<Part>& parts = made.value();
   const state::BodyMass mass = mass_of_parts(desc, parts);
+  state::Yielding yielding;
+  if (desc.yields) {
+    Result<state::Yielding> prepared = prepare_yielding(desc, mass, t);
+    if (!prepared) return prepared.error();
+    yielding = std::move(prepared).value();
+  }
   MotionDesc path = desc.motion;
   auto connection_points = connection_points_of(desc.connection_points, mass.center);
   make_room_for_body(t, parts.size());
@@ -391,14 +412,42 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   b.path_time[row] = t.time;
   b.connection_points[row] = std::move(connection_points);
   add_colliders(parts, mass.center, row, t);
+  if (yielding.form) {
+    yielding.body = row;
+    t.yielding.push_back(std::move(yielding));
+  }
   t.any_reports = t.any_reports || desc.sensor || desc.reports_contacts || std::isfinite(desc.hit_speed);
   if (moves)
     t.moving_bodies.insert(std::lower_bound(t.moving_bodies.begin(), t.moving_bodies.end(), row), row);
   return row;
 }
 
+void reshape_body(std::uint32_t row, std::span<const std::shared_ptr<const geometry::ConvexHull>> hulls,
+                  Tables& t) {
+  state::Bodies& b = t.bodies;
+  const state::Rows old = {b.first_collider[row], b.collider_count[row]};
+  const ContactDesc surface = t.colliders.surface[old.first];
+  for (std::uint32_t i = old.first; i < old.end(); ++i) {
+    t.colliders.body[i] = state::Colliders::kNoBody;
+    t.colliders.shape[i] = {};
+  }
+  t.free_colliders.push_back(old);
+  std::vector<Part> parts;
+  b.traits[row].radius = b.traits[row].inner_radius = Real(0);
+  for (const auto& hull : hulls) {
+    Part& part = parts.emplace_back();
+    part.desc = {.shape = Shape::hull_of({}), .contact = surface};
+    part.shape = {.shape = part.desc.shape, .mesh = nullptr, .hull = hull};
+    const Extent extent = extent_of(part, {});
+    b.traits[row].radius = std::max(b.traits[row].radius, extent.outer);
+    b.traits[row].inner_radius = std::max(b.traits[row].inner_radius, extent.inner);
+  }
+  add_colliders(parts, {}, row, t);
+}
+
 void remove_bodies(const std::vector<std::uint8_t>& goes, Tables& t) {
   HOOKE_ASSERT(goes.size() == t.bodies.traits.size());
+  std::erase_if(t.yielding, [&](const state::Yielding& yielding) { return goes[yielding.body] != 0; });
   state::remove_pairs(goes, t.colliders, t.pairs);
   std::erase_if(t.moving_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   for (std::uint32_t row = 0; row < goes.size(); ++row) {

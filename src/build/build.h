@@ -6,6 +6,8 @@
 #include "state/tables.h"
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,11 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, state::Tables& tables);
 /// Removes bodies and the pairs of their colliders. Their rows become holes in the tables of bodies and
 /// colliders. `goes` says by body row which bodies go.
 void remove_bodies(const std::vector<std::uint8_t>& goes, state::Tables& tables);
+
+/// Gives a body hulls about its center of mass in place of its colliders, with the surface of the first one.
+/// The pairs of its colliders must have been removed.
+void reshape_body(std::uint32_t row, std::span<const std::shared_ptr<const geometry::ConvexHull>> hulls,
+                  state::Tables& tables);
 
 /// Adds a hook, as the last of `tables.hooks`; its slot is not set.
 Result<void> add_hook(const HookDesc& desc, state::Tables& tables);

@@ -3,9 +3,11 @@
 #include "hooke/desc.h"
 
 #include "build/checks.h"
+#include "geometry/solid/tetrahedral_mesh.h"
 #include "state/tables.h"
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace hooke::build {
@@ -37,6 +39,12 @@ void add_loads(const std::vector<LoadDesc>& loads, std::vector<Real>& mass);
 /// small and can be shifted exactly.
 state::Deformable& append_object(PointRef::Kind kind, const Points& points, const std::vector<PinDesc>& pins,
                                  state::Tables& tables);
+
+/// Makes the skin of a solid from its outer points and the faces between them.
+[[nodiscard]] std::shared_ptr<const state::Skin> skin_of(const geometry::TetrahedralMesh& mesh);
+/// Makes a skin of the vertices of `surface`, held by the tetrahedra in which they lie.
+[[nodiscard]] std::shared_ptr<const state::Skin> skin_of(const geometry::TetrahedralMesh& mesh,
+                                                         const MeshDesc& surface);
 
 struct SpringRow {
   std::uint32_t a = 0, b = 0;  ///< Points of the object, in the order of its maker.

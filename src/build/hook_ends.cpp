@@ -142,18 +142,34 @@ Result<FoundEnd> find_point(const HookEnd& end, DVec3 anchor, const char* where,
   return found;
 }
 
-Result<FoundEnd> find_body(const HookEnd& end, const char* where, const Tables& t) {
+/// The place of a body that is soft now: the nearest one of its solid.
+FoundEnd find_soft_body(std::uint32_t object, DVec3 wanted, const Tables& t) {
+  FoundEnd found = {.place = nearest_place(t, t.objects[object], wanted),
+                    .is_given = true,
+                    .position = t.objects[object].origin};
+  found.place.object = object;
+  for (std::uint32_t i = 0; i < found.place.particle_count; ++i) {
+    const Vec3 x = t.particles.position[found.place.particle[i]].x;
+    found.position += static_cast<double>(found.place.weight[i]) * vector_cast<double>(x);
+  }
+  return found;
+}
+
+Result<FoundEnd> find_body(const HookEnd& end, DVec3 anchor, const char* where, const Tables& t) {
   FoundEnd found;
   const std::uint32_t body = t.body_slots.find(end.body);
   if (body == Tables::kNoRow) return stale_end(where);
+  const std::uint32_t yielding = state::yielding_row(t, body);
+  const std::uint32_t soft = yielding == Tables::kNoRow ? yielding : soft_object(t, t.yielding[yielding]);
   found.place.body = body;
-  if (end.connection_point.empty()) return found;
+  if (end.connection_point.empty()) return soft == Tables::kNoRow ? found : find_soft_body(soft, anchor, t);
   const Result<state::NamedPlace> named =
       find_connection_point(connection_points_of_body(body, t), end.connection_point, where);
   if (!named) return named.error();
   found.is_given = true;
   found.position =
       t.bodies.center[body] + vector_cast<double>(rotate(t.bodies.rotation[body], named.value().position));
+  if (soft != Tables::kNoRow) return find_soft_body(soft, found.position, t);
   return found;
 }
 
@@ -172,7 +188,7 @@ Result<FoundEnd> find_end(const HookEnd& end, DVec3 anchor, const char* where, c
     if (names_body) return Error{ErrorCode::kOutOfRange, where, "names a body and a point: one is meant"};
     return find_point(end, anchor, where, t);
   }
-  if (names_body) return find_body(end, where, t);
+  if (names_body) return find_body(end, anchor, where, t);
   if (end.connection_point.empty()) return FoundEnd{};
   return Error{ErrorCode::kOutOfRange, where, "is the world, which has no connection points"};
 }

@@ -156,6 +156,11 @@ bool is_dynamic(const Tables& t, std::uint32_t body) {
   return body != HookPlace::kWorld && t.bodies.traits[body].kind == BodyKind::kDynamic;
 }
 
+/// Whether an end is a body that may become soft.
+bool may_yield(const Tables& t, const HookPlace& end) {
+  return !end.is_point() && state::yielding_row(t, end.body) != Tables::kNoRow;
+}
+
 /// Checks whether a hook of this kind can hold these two ends.
 Result<void> check_ends(HookKind kind, const HookPlace& a, const HookPlace& b, const Tables& t) {
   const auto wrong = [](const char* where, const char* what) {
@@ -165,6 +170,13 @@ Result<void> check_ends(HookKind kind, const HookPlace& a, const HookPlace& b, c
     return end.is_point() && t.objects[end.object].kind == PointRef::Kind::kRope;
   };
   const bool any_point = a.is_point() || b.is_point();
+  const bool yields = may_yield(t, a) || may_yield(t, b);
+  if (yields && (kind == HookKind::kSlider || kind == HookKind::kWheel || kind == HookKind::kSixDegrees)) {
+    return Error{
+        ErrorCode::kUnsupported, "hook.kind",
+        "cannot hold a body that yields, whose points have no axes; hold it by ball, hinge, fixed or "
+        "distance hooks, or hook it to a body that has the freedom"};
+  }
   if (kind == HookKind::kRopeSlide) {
     if (!is_rope(a)) return wrong("hook.a", "must be a rope, along which `b` slides");
     if (is_rope(b) && b.object == a.object) return wrong("hook.b", "must not be of the rope it slides along");

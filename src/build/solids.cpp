@@ -147,37 +147,6 @@ double volume_of(const TetrahedralMesh& mesh) {
   return sum;
 }
 
-/// Makes the skin of a solid from its outer points and the faces between them.
-std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
-  auto skin = std::make_shared<state::Skin>();
-  std::vector<std::uint32_t> number(mesh.points.size(), geometry::kNone);
-  for (geometry::Triangle t : geometry::surface_of(mesh.tetrahedra)) {
-    for (std::uint32_t& p : t) {
-      if (number[p] == geometry::kNone) {
-        number[p] = static_cast<std::uint32_t>(skin->vertices.size());
-        skin->vertices.push_back({.points = {p, p, p, p}, .weights = {Real(1)}});
-      }
-      p = number[p];
-    }
-    skin->triangles.push_back(t);
-  }
-  return skin;
-}
-
-/// Makes a skin of the vertices of `surface`, held by the tetrahedra in which they lie.
-std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const MeshDesc& surface) {
-  std::vector<DVec3> places;
-  for (const Vec3& p : surface.positions) places.push_back(vector_cast<double>(p));
-  auto skin = std::make_shared<state::Skin>();
-  for (const geometry::TetrahedronPlace& place : geometry::locate(mesh, places)) {
-    state::Skin::Anchor& anchor = skin->vertices.emplace_back();
-    anchor.points = mesh.tetrahedra[place.tetrahedron];
-    for (std::size_t k = 0; k < 4; ++k) anchor.weights[k] = static_cast<Real>(place.weights[k]);
-  }
-  skin->triangles = surface.triangles;
-  return skin;
-}
-
 /// Gives each corner of a tetrahedron a quarter of its volume. The shares have the sum 1.
 std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
   std::vector<double> share(mesh.points.size(), 0.0);
@@ -395,6 +364,35 @@ void check_body(const SolidDesc& desc, const TetrahedralMesh& mesh, Checks& chec
 }
 
 }  // namespace
+
+std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
+  auto skin = std::make_shared<state::Skin>();
+  std::vector<std::uint32_t> number(mesh.points.size(), geometry::kNone);
+  for (geometry::Triangle t : geometry::surface_of(mesh.tetrahedra)) {
+    for (std::uint32_t& p : t) {
+      if (number[p] == geometry::kNone) {
+        number[p] = static_cast<std::uint32_t>(skin->vertices.size());
+        skin->vertices.push_back({.points = {p, p, p, p}, .weights = {Real(1)}});
+      }
+      p = number[p];
+    }
+    skin->triangles.push_back(t);
+  }
+  return skin;
+}
+
+std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const MeshDesc& surface) {
+  std::vector<DVec3> places;
+  for (const Vec3& p : surface.positions) places.push_back(vector_cast<double>(p));
+  auto skin = std::make_shared<state::Skin>();
+  for (const geometry::TetrahedronPlace& place : geometry::locate(mesh, places)) {
+    state::Skin::Anchor& anchor = skin->vertices.emplace_back();
+    anchor.points = mesh.tetrahedra[place.tetrahedron];
+    for (std::size_t k = 0; k < 4; ++k) anchor.weights[k] = static_cast<Real>(place.weights[k]);
+  }
+  skin->triangles = surface.triangles;
+  return skin;
+}
 
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   const Result<SolidBody> body = make_body(desc, tables);

@@ -16,6 +16,11 @@ Quaternion<double> in_double(Quaternion<T> q) {
                                       static_cast<double>(q.z), static_cast<double>(q.w)});
 }
 
+/// Returns the same rotation in Real, as tables hold it.
+inline Quat in_real(Quaternion<double> q) {
+  return {static_cast<Real>(q.x), static_cast<Real>(q.y), static_cast<Real>(q.z), static_cast<Real>(q.w)};
+}
+
 /// Returns the rotation by |phi| [rad] about phi, of unit length to rounding, from + - * / and sqrt only. Up
 /// to a quarter of a radian it takes the first terms of the series of sine and cosine, which are exact there
 /// to 3e-16.

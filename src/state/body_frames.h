@@ -101,4 +101,11 @@ inline Vec3 angular_momentum_of(const BodyMass& mass, Quat rotation, Vec3 omega)
   return rotate(axes, {mass.inertia.x * local.x, mass.inertia.y * local.y, mass.inertia.z * local.z});
 }
 
+/// The angular velocity that belongs to an angular momentum [kg m^2/s] of such a body [rad/s].
+inline Vec3 angular_velocity_of(const BodyMass& mass, Quat rotation, Vec3 momentum) {
+  const Quat axes = rotation * mass.principal;
+  const Vec3 l = rotate(conjugate(axes), momentum);
+  return rotate(axes, {l.x / mass.inertia.x, l.y / mass.inertia.y, l.z / mass.inertia.z});
+}
+
 }  // namespace hooke::state

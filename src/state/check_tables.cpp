@@ -170,6 +170,17 @@ const char* find_in_bodies(const Tables& t) {
   return find_in_moving_bodies(t);
 }
 
+const char* find_in_yielding(const Tables& t) {
+  for (const Yielding& yielding : t.yielding) {
+    if (!lives(t, yielding.body)) return "a body that yields";
+    if (!yielding.form || yielding.form->points.size() != yielding.form->mass.size()) return "form of a body";
+    if (yielding.is_soft() && soft_object(t, yielding) == Tables::kNoRow) return "solid of a body";
+    if (yielding.is_soft() && t.bodies.traits[yielding.body].kind != BodyKind::kStatic)
+      return "a soft body that moves";
+  }
+  return nullptr;
+}
+
 bool is_place(const Tables& t, const HookPlace& place) {
   if (!place.is_point()) return place.body == HookPlace::kWorld || lives(t, place.body);
   if (place.object >= t.objects.size() || place.particle_count > HookPlace::kMostParticles) return false;
@@ -276,6 +287,7 @@ const char* find_disagreement(const Tables& t) {
   if (const char* what = find_in_ranges(t)) return what;
   if (const char* what = find_in_objects(t)) return what;
   if (const char* what = find_in_bodies(t)) return what;
+  if (const char* what = find_in_yielding(t)) return what;
   if (const char* what = find_in_masses(t)) return what;
   if (const char* what = find_in_hooks(t)) return what;
   if (const char* what = find_in_pairs(t, t.pairs.pair, t.pairs.manifold)) return what;

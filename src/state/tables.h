@@ -15,6 +15,7 @@
 #include "state/springs.h"
 #include "state/tetrahedra.h"
 #include "state/twists.h"
+#include "state/yielding.h"
 
 #include <cstdint>
 #include <memory>
@@ -55,6 +56,8 @@ struct Tables {
                                       ///< creation.
   std::vector<SensorEvent> visits;    ///< Lists who is in which sensor; in order of creation.
   std::vector<Hook> hooks;            ///< In order of creation.
+  std::vector<Yielding> yielding;     ///< Bodies that may become soft; in order of creation.
+  std::vector<HeldHook> held_hooks;   ///< Hooks of those that are soft.
   std::uint64_t hook_revision = 0;    ///< Grows when hooks are added or removed or change their rows.
   std::vector<std::uint32_t> moving_bodies;  ///< Rows of bodies that are not static, in ascending order.
   std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
@@ -105,6 +108,19 @@ inline std::uint32_t object_row(const Tables& t, PointRef point) {
       break;
   }
   return Tables::kNoRow;
+}
+
+/// The row of Tables::yielding of a body; Tables::kNoRow for a body that does not yield.
+inline std::uint32_t yielding_row(const Tables& t, std::uint32_t body) {
+  for (std::uint32_t i = 0; i < t.yielding.size(); ++i) {
+    if (t.yielding[i].body == body) return i;
+  }
+  return Tables::kNoRow;
+}
+
+/// The row of the solid that a body is now; Tables::kNoRow if it is rigid.
+inline std::uint32_t soft_object(const Tables& t, const Yielding& yielding) {
+  return yielding.is_soft() ? t.solid_slots.find(t.solid_slots.id_of(yielding.solid)) : Tables::kNoRow;
 }
 
 }  // namespace hooke::state

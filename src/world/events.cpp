@@ -200,7 +200,7 @@ void clear_events(Events& events) {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
   clear(events.contact_begins, events.contact_ends, events.hits, events.sensor_enters, events.sensor_leaves,
         events.fell_asleep, events.woke_up, events.breaks, events.rope_breaks, events.tears,
-        events.solid_tears);
+        events.solid_tears, events.yields, events.freezes);
 }
 
 void gather_events(WorldData& world) {

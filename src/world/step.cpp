@@ -3,13 +3,12 @@
 ///   detect    who is near whom, and where they touch
 ///   prepare   how each contact and hook is solved (solver/routes.h), and the rows for it
 ///   substep   force, impact, correct, move; a few per step
-///   finish    quarantine, fast bodies, what breaks, sleep, events, folds, origins, report
-///
-/// Rules for this file: it computes nothing but times, touches no data beyond naming a table, and has at most
-/// 150 lines. docs/step.md names the header of each stage.
+///   finish    quarantine, fast bodies, what breaks, sleep, events, folds, origins, what freezes, report
+/// It computes nothing but times, and touches no data beyond naming a table. docs/step.md names the headers.
 
 #include "hooke/world.h"
 
+#include "world/blows.h"
 #include "world/body_stages.h"
 #include "world/claim.h"
 #include "world/events.h"
@@ -19,6 +18,7 @@
 #include "world/particle_stages.h"
 #include "world/point_contact_stages.h"
 #include "world/sleep.h"
+#include "world/soft_bodies.h"
 #include "world/step_report.h"
 #include "world/stepping.h"
 #include "world/stopwatch.h"
@@ -48,9 +48,9 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_step(w, dt);
 }
 
-/// Solves one particle substep. Soft rows come before yarns, and these before tethers and limits, which must
-/// hold; cloths that bear much are solved again, as a whole. Then ropes are solved exactly, with what they
-/// depend on. Contacts change velocities last, so that nothing pushes a particle into a body afterwards.
+/// Solves one particle substep. Soft rows come before yarns, these before tethers and limits, which must
+/// hold. Loaded cloths are solved again as a whole, then ropes with what depends on them. Contacts come last:
+/// nothing pushes a particle into a body then.
 void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep, bool first_of_step) {
   world::begin_particle_substep(w, h);
   world::accelerate_particles(w, end_time, h, first_of_substep);
@@ -71,10 +71,9 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::move_particles(w, h);
 }
 
-/// Solves one substep of bodies. Impacts with restitution come first, in order of time. Then contacts are
-/// solved with bias, and hooks with all that depends on them. When bodies have moved, refreshed contacts are
-/// found again. Last, contacts are solved without bias and with friction, which takes out the speed that
-/// pushed overlaps apart.
+/// Solves one substep of bodies. Impacts with restitution come first, in order of time; contacts follow with
+/// bias, and hooks with all that depends on them. Contacts of what has moved are found again. Last, contacts
+/// without bias and with friction take out the speed that pushed overlaps apart.
 void substep(WorldData& w, int i, double begin_time, Real h) {
   const int particle_substeps = w.tables.desc.particle_substeps;
   const Real particle_h = h / static_cast<Real>(particle_substeps);
@@ -93,6 +92,23 @@ void substep(WorldData& w, int i, double begin_time, Real h) {
   world::relax_body_contacts(w);
 }
 
+/// Makes the step up to its last substep. Returns false if a body yields: all is then as before, with a solid
+/// in its place, and the step begins anew.
+bool advance(WorldData& w, double dt, Real h, StepReport& report) {
+  world::Stopwatch watch;
+  detect(w, dt);
+  report.detect_ms += watch.lap_ms();
+  prepare(w, dt, h);
+  report.prepare_ms += watch.lap_ms();
+  bool holds = true;
+  for (int i = 0; i < w.tables.desc.substeps && holds; ++i) {
+    substep(w, i, w.tables.time + i * (dt / w.tables.desc.substeps), h);
+    holds = !world::take_back_for_blows(w, dt, w.tables.time + (i + 1) * static_cast<double>(h), h);
+  }
+  report.substep_ms += watch.lap_ms();
+  return holds;
+}
+
 void finish(WorldData& w, double dt, StepReport& report) {
   world::count_routes(w, report);
   report.rows_quarantined = world::quarantine_bodies(w);
@@ -109,6 +125,8 @@ void finish(WorldData& w, double dt, StepReport& report) {
   world::flow_cloths(w);
   world::rebase_origins(w);
   world::tear_deformables(w, dt);
+  world::soften_pressed(w, w.tables.time + dt);
+  world::follow_soft_bodies(w, dt);
   world::end_step(w, dt, report);
 }
 
@@ -117,22 +135,15 @@ void finish(WorldData& w, double dt, StepReport& report) {
 StepReport World::step(Real dt) {
   const std::shared_ptr<WorldData> data = data_;  // Force laws may move or destroy this World.
   const world::Claim claim(data);
+  if (!claim || !world::is_step(dt)) return {};
   StepReport report;
-  if (!claim || !world::is_step(dt)) return report;
   WorldData& w = *claim;
   world::Stepping stepping(w);
+  world::watch_for_blows(w, static_cast<double>(dt));
+  while (!advance(w, static_cast<double>(dt), dt / static_cast<Real>(w.tables.desc.substeps), report)) {
+  }
   world::Stopwatch watch;
-  const auto frame = static_cast<double>(dt);
-  const int substeps = w.tables.desc.substeps;
-  const Real h = dt / static_cast<Real>(substeps);
-
-  detect(w, frame);
-  report.detect_ms = watch.lap_ms();
-  prepare(w, frame, h);
-  report.prepare_ms = watch.lap_ms();
-  for (int i = 0; i < substeps; ++i) substep(w, i, w.tables.time + i * (frame / substeps), h);
-  report.substep_ms = watch.lap_ms();
-  finish(w, frame, report);
+  finish(w, static_cast<double>(dt), report);
   report.finish_ms = watch.lap_ms();
   stepping.end();
   return report;

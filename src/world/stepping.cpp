@@ -11,28 +11,6 @@ namespace hooke::world {
 
 namespace {
 
-void note_start(WorldData& world) {
-  const state::Tables& t = world.tables;
-  world.frame.start_position = t.particles.position;
-  world.frame.start_velocity = t.particles.velocity;
-  world.frame.start_origin.clear();
-  for (const state::Deformable& object : t.objects) world.frame.start_origin.push_back(object.origin);
-  const state::Bodies& b = t.bodies;
-  world.frame.start_bodies.clear();
-  for (const std::uint32_t row : t.moving_bodies) {
-    if (b.asleep[row] != 0) continue;
-    world.frame.start_bodies.push_back({.row = row,
-                                        .rest_time = b.rest_time[row],
-                                        .center = b.center[row],
-                                        .rotation = b.rotation[row],
-                                        .v = b.motion[row].v,
-                                        .angular_momentum = b.angular_momentum[row],
-                                        .angular_velocity = b.angular_velocity[row],
-                                        .force = b.force[row],
-                                        .torque = b.torque[row]});
-  }
-}
-
 void put_bodies_back(WorldData& world) {
   state::Bodies& b = world.tables.bodies;
   for (const std::uint32_t row : world.tables.moving_bodies) {
@@ -91,6 +69,28 @@ void reset_contacts(WorldData& world) {
 }
 
 }  // namespace
+
+void note_start(WorldData& world) {
+  const state::Tables& t = world.tables;
+  world.frame.start_position = t.particles.position;
+  world.frame.start_velocity = t.particles.velocity;
+  world.frame.start_origin.clear();
+  for (const state::Deformable& object : t.objects) world.frame.start_origin.push_back(object.origin);
+  const state::Bodies& b = t.bodies;
+  world.frame.start_bodies.clear();
+  for (const std::uint32_t row : t.moving_bodies) {
+    if (b.asleep[row] != 0) continue;
+    world.frame.start_bodies.push_back({.row = row,
+                                        .rest_time = b.rest_time[row],
+                                        .center = b.center[row],
+                                        .rotation = b.rotation[row],
+                                        .v = b.motion[row].v,
+                                        .angular_momentum = b.angular_momentum[row],
+                                        .angular_velocity = b.angular_velocity[row],
+                                        .force = b.force[row],
+                                        .torque = b.torque[row]});
+  }
+}
 
 Stepping::Stepping(WorldData& world) : world_(world) {
   state::check_tables(world.tables);  // This covers the calls since the last step.

@@ -11,6 +11,9 @@ namespace hooke::world {
   return dt >= static_cast<Real>(limits::kShortestStep) && dt <= static_cast<Real>(limits::kLongestStep);
 }
 
+/// Notes the state to which a step that throws goes back, as that is now.
+void note_start(WorldData& world);
+
 /// A step that runs. If an exception of a force law or a lack of memory ends it, the destructor takes it
 /// back: positions, velocities, pending forces and sleep are as before the step. What contacts, ropes and
 /// hooks remember of earlier steps is lost, or is that of the broken step.

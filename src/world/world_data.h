@@ -184,6 +184,25 @@ struct Frame {
   std::vector<Vec3> given_torque;       ///< Torques that the user gave for the step [N m].
 };
 
+/// What one other body or deformable gave to a body that yields, in the step so far.
+struct BlowSum {
+  std::uint32_t yielding = 0;  ///< Row of Tables::yielding.
+  std::uint32_t other = 0;     ///< Row of the body; of a deformable, its row with the highest bit set.
+  Real impulse = Real(0);      ///< Sum along the normals of contacts [N s].
+  Real pushed = Real(0);       ///< Largest impulse of one contact, with that of bouncing [N s].
+  Real largest = Real(0);      ///< Largest impulse of one contact in one substep [N s].
+  DVec3 place = {};            ///< Where that was [m].
+};
+
+/// What is kept to see which bodies yield in a step, and to take the step back then (world/blows.h).
+struct Blows {
+  std::unique_ptr<state::Tables> before;  ///< The tables when the step began, if `may_return`.
+  bool may_return = false;
+  int returns = 0;  ///< How often this step has been taken back.
+  std::vector<BlowSum> sums;
+  std::vector<std::uint32_t> row_of;  ///< By body: its row of Tables::yielding, or Tables::kNoRow.
+};
+
 /// What the World reports about the last step.
 struct LastStep {
   Events events;
@@ -198,6 +217,7 @@ struct WorldData {
   world::Derived derived;  ///< Made again from the tables when these change.
   world::Frame frame;      ///< Memory of one step.
   world::LastStep last_step;
+  world::Blows blows;
 
   // These members serve every step.
   std::unique_ptr<parallel::ThreadPool> pool;

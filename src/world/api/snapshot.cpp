@@ -44,7 +44,8 @@ std::size_t bytes_of(const state::Tables& t) {
   count.add_columns(t.bodies);
   count.add_columns(t.colliders);
   const state::Pairs& pairs = t.pairs;
-  count.add(t.objects, t.twists, t.element_contacts, t.rope_contacts, t.pins, t.touches, t.visits, t.hooks);
+  count.add(t.objects, t.twists, t.element_contacts, t.rope_contacts, t.pins, t.touches, t.visits, t.hooks,
+            t.yielding, t.held_hooks);
   count.add(pairs.pair, pairs.manifold, pairs.coupled, pairs.seen, pairs.sleeping.pair,
             pairs.sleeping.manifold);
   for (const state::Hook& hook : t.hooks) count.add(hook.inside);

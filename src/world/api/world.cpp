@@ -10,14 +10,14 @@
 #include "solver/air/gas_pressure.h"
 #include "solver/air/wind.h"
 #include "solver/rope/rope_twist.h"
+#include "world/api/machine.h"
+#include "world/api/state_hash.h"
+#include "world/api/undo.h"
 #include "world/claim.h"
 #include "world/events.h"
 #include "world/hook_stages.h"
-#include "world/machine.h"
 #include "world/object_edits.h"
 #include "world/sleep.h"
-#include "world/state_hash.h"
-#include "world/undo.h"
 #include "world/world_data.h"
 
 #include <algorithm>
@@ -285,6 +285,7 @@ bool World::remove(ClothId id) {
 }
 
 bool World::remove(SolidId id) {
+  if (const BodyId body = body_of(id); body != BodyId{}) return remove(body);
   const world::Claim claim(data_);
   if (!claim) return false;
   return remove_object(claim.tables(), claim.tables().solid_slots, id);

@@ -13,6 +13,7 @@
 #include "world/hook_stages.h"
 #include "world/object_edits.h"
 #include "world/sleep.h"
+#include "world/soft_bodies.h"
 #include "world/world_data.h"
 
 #include <algorithm>
@@ -32,10 +33,7 @@ constexpr std::uint32_t kNone = state::SlotTable<BodyId>::kNone;
 
 /// Angular velocity of a dynamic body with the angular momentum `momentum` [rad/s].
 Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row, Vec3 momentum) {
-  const Quat axes = bodies.rotation[row] * bodies.mass[row].principal;
-  const Vec3 inertia = bodies.mass[row].inertia;
-  const Vec3 l = rotate(conjugate(axes), momentum);
-  return rotate(axes, {l.x / inertia.x, l.y / inertia.y, l.z / inertia.z});
+  return state::angular_velocity_of(bodies.mass[row], bodies.rotation[row], momentum);
 }
 
 Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
@@ -46,6 +44,20 @@ Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
 /// Lever from the center of mass to the position `at` in the world [m].
 Vec3 lever(const Bodies& bodies, std::uint32_t row, DVec3 at) {
   return vector_cast<Real>(at - bodies.center[row]);
+}
+
+/// The row of Tables::yielding of a body that is soft now, or null.
+const state::Yielding* soft_row(const Tables& t, std::uint32_t body) {
+  const std::uint32_t row = state::yielding_row(t, body);
+  return row == Tables::kNoRow || !t.yielding[row].is_soft() ? nullptr : &t.yielding[row];
+}
+
+/// Pushes the points of a soft body as a rigid one would be pushed.
+Result<void> push_soft(const state::Yielding& yielding, Vec3 force, Vec3 torque, Tables& t) {
+  Result<void> good = world::check_force("force", force, force);
+  if (good) good = world::check_force("torque", torque, torque);
+  if (good) world::push_soft_body(yielding, force, torque, t);
+  return good;
 }
 
 /// Adds a force and a torque that act during the next step, and wakes the body.
@@ -179,6 +191,7 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   if (count == 0) return 0;
   world::wake_neighbors(t, [&](std::uint32_t row) { return goes[row] != 0; });
   world::remove_hooks_of(goes, t);
+  world::remove_soft_forms_of(goes, t);
   std::erase_if(claim->derived.placed_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   build::remove_bodies(goes, t);
   t.contacts = {};  // Detect finds the remaining contacts again in the next step.
@@ -213,7 +226,9 @@ DVec3 World::center_of_mass(BodyId id) const {
 Real World::mass(BodyId id) const {
   const world::Reading reading(data_);
   const std::uint32_t row = reading.tables().body_slots.find(id);
-  return row == kNone ? Real(0) : reading.tables().bodies.mass[row].mass;
+  if (row == kNone) return Real(0);
+  const auto* soft = soft_row(reading.tables(), row);
+  return soft != nullptr ? soft->mass.mass : reading.tables().bodies.mass[row].mass;
 }
 
 bool World::asleep(BodyId id) const {
@@ -273,6 +288,8 @@ Result<void> World::apply_force(BodyId body, Vec3 force, DVec3 at) {
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (auto good = Checks("").place("at", at).result(); !good) return good;
+  if (const auto* soft = soft_row(claim.tables(), row))
+    return push_soft(*soft, force, cross(lever(bodies, row, at), force), claim.tables());
   return push(bodies, row, force, cross(lever(bodies, row, at), force));
 }
 
@@ -282,6 +299,7 @@ Result<void> World::apply_torque(BodyId body, Vec3 torque) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
+  if (const auto* soft = soft_row(claim.tables(), row)) return push_soft(*soft, {}, torque, claim.tables());
   return push(bodies, row, {}, torque);
 }
 
@@ -301,6 +319,11 @@ Result<void> World::apply_impulse(BodyId body, Vec3 impulse, DVec3 at) {
   if (row == kNone) return world::stale("body");
   Checks checks("");
   checks.within("impulse", impulse, limits::kForce, " N s").place("at", at);
+  if (const auto* soft = soft_row(claim.tables(), row); soft != nullptr && checks.good()) {
+    const Vec3 spin = world::soft_spin(*soft, cross(lever(bodies, row, at), impulse), claim.tables());
+    world::change_soft_motion(*soft, Real(1) / soft->mass.mass * impulse, spin, claim.tables());
+    return {};
+  }
   if (!checks.good() || !is_dynamic(bodies, row)) return checks.result();
   const Vec3 v = bodies.motion[row].v + bodies.mass[row].inverse_mass * impulse;
   const Vec3 momentum = bodies.angular_momentum[row] + cross(lever(bodies, row, at), impulse);
@@ -321,6 +344,10 @@ Result<void> World::set_velocity(BodyId body, Vec3 velocity) {
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (auto good = Checks("").velocity("velocity", velocity).result(); !good) return good;
+  if (const auto* soft = soft_row(claim.tables(), row)) {
+    world::change_soft_motion(*soft, velocity - bodies.motion[row].v, {}, claim.tables());
+    return {};
+  }
   if (bodies.traits[row].kind != BodyKind::kStatic) bodies.motion[row].v = velocity;
   state::wake(bodies, row);
   return {};
@@ -334,6 +361,10 @@ Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
   if (row == kNone) return world::stale("body");
   auto good = Checks("").within("angular_velocity", angular_velocity, limits::kSpin, " rad/s").result();
   if (!good) return good;
+  if (const auto* soft = soft_row(claim.tables(), row)) {
+    world::change_soft_motion(*soft, {}, angular_velocity - bodies.angular_velocity[row], claim.tables());
+    return {};
+  }
   if (bodies.traits[row].kind == BodyKind::kStatic) return {};
   bodies.angular_velocity[row] = angular_velocity;
   bodies.angular_momentum[row] =
@@ -371,6 +402,10 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
                   .require(build::is_rotation(pose.rotation), "rotation", "must be finite and not zero")
                   .result();
   if (!good) return good;
+  if (const auto* soft = soft_row(claim.tables(), row)) {
+    world::place_soft_body(*soft, pose, claim.tables());
+    return {};
+  }
   const Quat rotation = normalize(pose.rotation);
   const Vec3 omega = angular_velocity_of(bodies, row);
   bodies.rotation[row] = rotation;

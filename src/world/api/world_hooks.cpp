@@ -9,10 +9,10 @@
 #include "collision/deformable/particle_contacts.h"
 #include "solver/coupled/coupled_groups.h"
 #include "solver/joint_rows/joint_rows.h"
+#include "world/api/undo.h"
 #include "world/claim.h"
 #include "world/hook_stages.h"
 #include "world/object_edits.h"
-#include "world/undo.h"
 #include "world/world_data.h"
 
 #include <algorithm>

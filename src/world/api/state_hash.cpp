@@ -1,4 +1,4 @@
-#include "world/state_hash.h"
+#include "world/api/state_hash.h"
 
 #include "base/hash.h"
 
@@ -223,6 +223,22 @@ void add_hooks(StateHash& hash, const Tables& t) {
   }
 }
 
+void add_yielding(StateHash& hash, const Tables& t) {
+  for (const state::Yielding& y : t.yielding) {
+    const YieldsDesc& d = y.desc;
+    add(hash, y.body, d.impulse, d.young_modulus, d.poisson_ratio, d.damping, d.yield_stress, d.thickness,
+        d.freeze_below, d.freeze_after);
+    add(hash, y.form->points, y.form->mass, y.form->tetrahedra, y.reshaped, y.solid, y.impulse, y.calm);
+    add(hash, y.kind, y.mass.center, y.mass.principal, y.mass.inertia, y.mass.mass);
+  }
+  for (const state::HeldHook& held : t.held_hooks) {
+    add(hash, held.hook.slot, held.helpers, held.hook.kind, held.hook.cone, held.hook.rest_distance);
+    add(hash, held.hook.a.axes, held.hook.b.axes, held.hook.value);
+    for (const HookFreedom& freedom : held.hook.freedom)
+      add(hash, freedom.locked, freedom.limits, freedom.spring, freedom.motor);
+  }
+}
+
 }  // namespace
 
 std::uint64_t hash_of(const Tables& t) {
@@ -236,6 +252,7 @@ std::uint64_t hash_of(const Tables& t) {
   add_colliders(hash, t);
   add_pairs(hash, t.pairs);
   add_hooks(hash, t);
+  add_yielding(hash, t);
   return hash.value();
 }
 

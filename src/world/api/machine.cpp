@@ -1,4 +1,4 @@
-#include "world/machine.h"
+#include "world/api/machine.h"
 
 #include "hooke/machine.h"
 

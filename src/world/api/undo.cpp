@@ -1,4 +1,4 @@
-#include "world/undo.h"
+#include "world/api/undo.h"
 
 #include "base/assert.h"
 
