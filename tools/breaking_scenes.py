@@ -1,5 +1,7 @@
 """Scenes of what is cut and bursts; make_scenes.py writes them."""
-from scene_kit import at_point, body, box, ground, promise, scene
+import math
+
+from scene_kit import X, Y, Z, at_point, body, box, ground, hook, promise, scene, turn
 from solid_scenes import icosphere
 
 
@@ -71,4 +73,58 @@ def balloon_burst():
         }])
 
 
-BREAKING_SCENES = [cake_and_blade, balloon_burst]
+def door_and_car():
+    half_width, half_height, half_depth = 1.0, 1.0, 0.03
+    gap, hinge_x, speed, radius, aside = 0.02, -1.02, 4.0, 0.28, 0.25
+    start = -2.6
+    wheels = [(side, end) for side in (-1, 1) for end in (-1, 1)]
+    lie = turn(Z, math.pi / 2)
+    spin = [speed / radius, 0, 0]
+    car = {
+        "parts": [{"shape": box(0.5, 0.16, 1.15), "material": "paint"},
+                  {"shape": box(0.42, 0.2, 0.5), "position": [0, 0.36, -0.15], "material": "glass"},
+                  {"shape": {"cylinder": {"radius": 0.16, "half_height": 0.2}}, "position": [0, 0, 1.15], "rotation": lie,
+                   "material": "steel"}]
+    }
+    made = scene(
+        "A door and a car",
+        "The paper's door (3.6.1): a car drives against a door of tin on two hinges. The blow is more than the door takes as "
+        "a rigid body. It turns soft, is dented, swings open against a wall, and is a rigid body again, with its dent and on its hinges, "
+        "within two seconds.", 3, [3.6, 2.1, 4.6], [0, 0.95, 0.3], {"ground": {}}, [
+            ground(),
+            body("posts", "concrete", box(0.15, 1.2, 0.15), [hinge_x - 0.17, 1.2, 0], "static",
+                 array={"list": [[0, 0, 0], [2.4, 0, 0]]}),
+            body("lintel", "concrete", box(1.35, 0.15, 0.15), [0, 2.55, 0], "static"),
+            body("wall", "concrete", box(0.15, 1.2, 1.15), [hinge_x - 0.55, 1.2, 1.3], "static"),
+            body("door", "tin", box(half_width, half_height, half_depth), [0, half_height + gap, 0], mass=90,
+                 angular_damping=6),
+            body("car", "paint", car, [aside, 0.5, start], mass=420, velocity=[0, 0, speed]),
+            *(body(f"wheel_{i}", "rubber", {"cylinder": {"radius": radius, "half_height": 0.07}},
+                   [aside + 0.6 * side, radius, start + 0.75 * end], rotation=lie, mass=14, velocity=[0, 0, speed],
+                   angular_velocity=spin) for i, (side, end) in enumerate(wheels)),
+        ], [
+            promise("soft", "==", 0, "door", at_step=15),
+            promise("soft", "==", 1, "door", at_step=40),
+            promise("yielded", "==", 1, "door"),
+            promise("soft", "==", 0, "door", at_step=140),
+            promise("gap", "<", 0.002, "upper_hinge"),
+            promise("gap", "<", 0.002, "lower_hinge"),
+        ], hooks=[
+            hook("upper_hinge", "hinge", "door", [hinge_x, 1.75, 0], "posts[0]", axis=Y),
+            hook("lower_hinge", "hinge", "door", [hinge_x, 0.3, 0], "posts[0]", axis=Y),
+            *(hook(f"axle_{i}", "hinge", f"wheel_{i}", [aside + 0.6 * side, radius, start + 0.75 * end], "car", axis=X,
+                   motor={"max_force": 25}) for i, (side, end) in enumerate(wheels)),
+        ])
+    made["materials"] |= {
+        "paint": {"like": "steel", "color": [0.5, 0.03, 0.03], "metalness": 0.3, "roughness": 0.25},
+        "tin": {
+            "like": "steel", "roughness": 0.45, "yields": {
+                "impulse": 60, "cell": 0.2, "young_modulus": 10000000, "damping": 0.003, "yield_stress": 30000,
+                "freeze_below": 0.15, "freeze_after": 0.1
+            }
+        }
+    }
+    return made
+
+
+BREAKING_SCENES = [cake_and_blade, balloon_burst, door_and_car]

@@ -35,10 +35,10 @@ using Quantity = SceneExpectation::Quantity;
 
 /// Tells whether only a step of the solver gives the figure.
 bool is_of_solver(Quantity quantity) {
-  constexpr Quantity kFigures[] = {Quantity::kTension, Quantity::kPenetration, Quantity::kContacts,
-                                   Quantity::kAsleep,  Quantity::kForce,       Quantity::kTorque,
-                                   Quantity::kTwist,   Quantity::kAngle,       Quantity::kWay,
-                                   Quantity::kGap,     Quantity::kBroken};
+  constexpr Quantity kFigures[] = {
+      Quantity::kTension, Quantity::kPenetration, Quantity::kContacts, Quantity::kAsleep, Quantity::kForce,
+      Quantity::kTorque,  Quantity::kTwist,       Quantity::kAngle,    Quantity::kWay,    Quantity::kGap,
+      Quantity::kBroken,  Quantity::kYielded,     Quantity::kSoft};
   return std::find(std::begin(kFigures), std::end(kFigures), quantity) != std::end(kFigures);
 }
 

@@ -146,6 +146,48 @@ static std::string text_of_breaks(const Simulation& simulation) {
   return text + count_of_breaks(broken) + "\n";
 }
 
+/// Returns the bodies that became soft, in the order of time.
+static std::vector<const SceneObject*> yielded_objects(const Simulation& simulation) {
+  std::vector<const SceneObject*> yielded;
+  for (const SceneObject& object : simulation.objects()) {
+    if (object.blow) yielded.push_back(&object);
+  }
+  std::stable_sort(yielded.begin(), yielded.end(),
+                   [](const SceneObject* a, const SceneObject* b) { return a->blow->time < b->blow->time; });
+  return yielded;
+}
+
+static Json json_of_yields(const Simulation& simulation) {
+  Json list = Json::array();
+  for (const SceneObject* object : yielded_objects(simulation)) {
+    const YieldEvent& blow = *object->blow;
+    list.push_back({{"body", object->name},
+                    {"time", blow.time},
+                    {"impulse", blow.impulse},
+                    {"place", {blow.place.x, blow.place.y, blow.place.z}},
+                    {"times", object->yielded}});
+    if (object->froze) list.back()["froze"] = object->froze->time;
+  }
+  return list;
+}
+
+/// Returns a line such as "yielded   'door' at 0.45 s, for 86.5 N s; rigid again at 1.77 s" for each body
+/// that became soft.
+static std::string text_of_yields(const Simulation& simulation) {
+  std::string text;
+  for (const SceneObject* object : yielded_objects(simulation)) {
+    text +=
+        "yielded   '" + object->name + "'" +
+        text_of(" at %.6g s, for %.4g N s", object->blow->time, static_cast<double>(object->blow->impulse));
+    if (object->yielded > 1) text += text_of(", first of %d times", object->yielded);
+    const bool is_soft = simulation.world().soft_form(object->body) != SolidId{};
+    text += is_soft || !object->froze ? "; soft at the end"
+                                      : text_of("; rigid again at %.6g s", object->froze->time);
+    text += "\n";
+  }
+  return text;
+}
+
 static Json json_of_problems(const std::vector<RunWarning>& problems) {
   Json list = Json::array();
   for (const RunWarning& one : problems) {
@@ -208,6 +250,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"routes", json_of_routes(record.last.routes)},
       {"refused", json_of_refused(record.worst)},
       {"broke", json_of_breaks(simulation)},
+      {"yielded", json_of_yields(simulation)},
       {"state_hash", hash_text(world.state_hash())},
       {"expect", json_of(simulation, simulation.verdicts())},
       {"passed", passed(simulation)},
@@ -239,6 +282,7 @@ std::string run_summary(const Simulation& simulation, const RunRecord& record) {
   text += text_of("contacts  %u, deepest overlap %.3g mm\n", record.last.contacts,
                   1000 * end.largest_penetration);
   text += text_of_breaks(simulation);
+  text += text_of_yields(simulation);
   text += "hash      " + hash_text(world.state_hash()) + "\n";
   text += simulation.report();
   const std::size_t due = simulation.verdicts().size();

@@ -55,6 +55,7 @@ struct SceneMaterial {
   std::optional<Real> linear_density = {};  ///< Of ropes [kg/m], positive.
   std::optional<Real> diameter = {};        ///< Of ropes [m], positive.
   std::optional<Real> strength = {};        ///< Tension at which ropes break [N], positive.
+  std::optional<YieldsDesc> yields = {};    ///< What bodies that move and are no compounds do when hit hard.
   Real friction = Real(0.5);                ///< Coulomb coefficient while sliding. [0, 100]
   /// Coefficient while at rest; `friction` by default. [friction, 100]
   std::optional<Real> static_friction = {};
@@ -376,6 +377,8 @@ struct SceneExpectation {
     /// 1 for a hook that has broken; how many segments of a rope have broken or were cut, or how many points
     /// of a cloth or a solid have split; of the world, the sum.
     kBroken,
+    kYielded,  ///< How often a body has become soft (BodyDesc::yields); of the world, the sum.
+    kSoft,     ///< 1 for a body that is soft now, 0 for others; of the world, the sum.
   };
   /// How the achieved figure is compared with `value`.
   enum class Op : std::uint8_t {
@@ -522,6 +525,9 @@ struct SceneObject {
   Real tore_at = Real(0);   ///< Strain at which a cloth tore first, or stress at which a solid did [Pa].
   std::string cut_by = {};  ///< Name of the blade, if it was cut before it broke or tore.
   BreakEvent broke = {};    ///< How a hook broke, or where a rope snapped first, without its HookId.
+  int yielded = 0;          ///< How often a body has become soft (BodyDesc::yields).
+  std::optional<YieldEvent> blow = {};       ///< How it yielded first, if it has.
+  std::optional<FreezeEvent> froze = {};     ///< How it became rigid again last, if it has.
   std::shared_ptr<const Model> model = {};   ///< Model of a mesh body, cloth or solid; of a hull, its faces.
   std::shared_ptr<const Model> visual = {};  ///< Model that is drawn in place of a body's shape; may be null.
   double mesh_volume = 0;  ///< Volume of the closed surface that a solid fills [m^3]; 0 for others.

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace hooke::world {
@@ -90,6 +91,15 @@ void find_inside(Hook& hook, const Tables& t) {
   hook.inside = collision::points_inside(t, hook.point_end().object, body);
 }
 
+/// Lets no point of the solid touch the body at the other end, as two bodies on a hook do not.
+void exclude_all(Hook& hook, const Tables& t) {
+  hook.inside.clear();
+  const std::uint32_t body = hook.other_end().body;
+  if (hook.collide || body == HookPlace::kWorld || (hook.a.is_point() && hook.b.is_point())) return;
+  hook.inside.resize(t.objects[hook.point_end().object].particles.count);
+  std::iota(hook.inside.begin(), hook.inside.end(), 0U);
+}
+
 /// Adds a ball beside a hook, in the direction in which the solid is nearer. Returns its slot.
 std::uint32_t add_helper(const Hook& hook, bool at_a, DVec3 direction, Real radius, Tables& t) {
   const std::uint32_t object = (at_a ? hook.a : hook.b).object;
@@ -108,7 +118,7 @@ std::uint32_t add_helper(const Hook& hook, bool at_a, DVec3 direction, Real radi
   make_ball(helper);
   (at_a ? helper.a : helper.b) = best;
   put_anchor(place_of(best, t), t, at_a ? helper.b : helper.a);
-  find_inside(helper, t);
+  exclude_all(helper, t);
   helper.slot = t.hook_slots.add(static_cast<std::uint32_t>(t.hooks.size())).slot;
   t.hooks.push_back(helper);
   return helper.slot;
@@ -136,7 +146,7 @@ void move_to_solid(std::uint32_t row, bool at_a, std::uint32_t object, Tables& t
     make_ball(hook);
   }
   forget_impulses(hook);
-  find_inside(hook, t);
+  exclude_all(hook, t);
   const Hook moved = hook;
   std::size_t count = 0;
   for (const DVec3 direction : helper_directions(kind, axes))

@@ -221,7 +221,7 @@ const BadScene kBadScenes[] = {
       "'angular_speed', 'tilt', 'extension', 'largest_stretch', 'mean_stretch', 'tension', 'twist', "
       "'lowest', 'highest', 'total_energy', 'kinetic_energy', "
       "'potential_energy', 'elastic_energy', 'momentum', 'penetration', 'contacts', 'asleep', 'force', "
-      "'torque', 'angle', 'way', 'gap', 'broken'"}},
+      "'torque', 'angle', 'way', 'gap', 'broken', 'yielded', 'soft'"}},
     {R"({"version": 1, "hooks": [{"b": "x"}]})",
      {"1:26: hooks[0]: needs 'anchor', or a point of what it holds"}},
     {R"({"version": 1, "hooks": [{"b": "ball", "anchor": [0, 0, 0]}]})",

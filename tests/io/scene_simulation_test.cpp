@@ -291,6 +291,46 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(again.world().state_hash() == hash);
   }
 
+  TEST_CASE("a body yields by its own keys or its material's, and a restoration yields again alike") {
+    const char* const text = R"({
+      "version": 1, "seconds": 1.5, "world": {"gravity": [0, 0, 0]},
+      "materials": {"tin": {"yields": {"impulse": 20, "cell": 0.2, "young_modulus": 3e6, "damping": 0.02,
+                                       "yield_stress": 3e4}}, "iron": {}},
+      "bodies": [
+        {"name": "plate", "kind": "dynamic", "material": "tin", "mass": 12, "shape": {"box": {"half_extents": [0.3, 0.3, 0.03]}}},
+        {"name": "still", "material": "tin", "shape": {"box": {"half_extents": [0.3, 0.3, 0.03]}}, "position": [5, 0, 0]},
+        {"name": "own", "kind": "dynamic", "material": "tin", "mass": 12, "shape": {"box": {"half_extents": [0.3, 0.3, 0.03]}},
+         "position": [2, 0, 0], "yields": {"impulse": 1e6}},
+        {"name": "ball", "kind": "dynamic", "mass": 6, "shape": {"sphere": {"radius": 0.08}}, "position": [0.1, 0, -0.5],
+         "velocity": [0, 0, 10], "array": {"list": [[0, 0, 0], [2, 0, 0]]}}],
+      "expect": [{"quantity": "soft", "of": "plate", "op": "==", "value": 1, "at_step": 5},
+                 {"quantity": "soft", "of": "plate", "op": "==", "value": 0},
+                 {"quantity": "yielded", "of": "plate", "op": "==", "value": 1},
+                 {"quantity": "yielded", "of": "own", "op": "==", "value": 0},
+                 {"quantity": "yielded", "op": "==", "value": 1}]
+    })";
+    hooke::Simulation simulation = simulate(text);
+    for (int i = 0; i < 6; ++i) simulation.step();
+    const hooke::SimulationSnapshot middle = simulation.snapshot();
+    simulation.run();
+    CHECK(simulation.passed());
+    const std::uint64_t hash = simulation.world().state_hash();
+    const hooke::SceneObject* plate = simulation.find("plate");
+    REQUIRE(plate->blow.has_value());
+    CHECK(plate->blow->impulse > 20);
+    REQUIRE(plate->froze.has_value());
+    CHECK(plate->froze->time > plate->blow->time);
+    CHECK(simulation.world().is_reshaped(plate->body));
+    REQUIRE(simulation.restore(middle).has_value());
+    CHECK(simulation.world().soft_form(simulation.find("plate")->body) != hooke::SolidId{});
+    CHECK(!simulation.find("plate")->froze.has_value());
+    simulation.run();
+    CHECK(simulation.world().state_hash() == hash);
+    hooke::Simulation again = simulate(hooke::write_scene(simulation.scene()));
+    again.run();
+    CHECK(again.world().state_hash() == hash);
+  }
+
   TEST_CASE("what is no blade is said at its place") {
     const auto complaint = [](const std::string& rest) {
       const std::string text =

@@ -74,7 +74,8 @@ constexpr const char* kEverything = R"({
                 "unused": {"like": "cotton", "color": [0.5, 0.25, 0.125], "metalness": 0.5, "roughness": 0.25,
                            "transmission": 0.125, "sheen": 0.75, "thread_pitch": 0.001, "hair": true, "density": 900,
                            "young_modulus": 5000, "poisson_ratio": 0.25, "areal_density": 0.3,
-                           "linear_density": 0.05, "diameter": 0.02, "strength": 100}},
+                           "linear_density": 0.05, "diameter": 0.02, "strength": 100,
+                           "yields": {"impulse": 10, "yield_stress": "rigid"}}},
   "material_pairs": [{"a": "silk", "b": "plain", "friction": 0.3, "static_friction": 0.4, "restitution": 0.75}],
   "bodies": [
     {"name": "ground", "material": "silk", "shape": {"half_space": {}}, "friction": 0.25, "visual": "file",
@@ -101,6 +102,8 @@ constexpr const char* kEverything = R"({
     {"kind": "dynamic", "shape": {"box": {}}, "section": {"area": 0.01, "second_moment": 1e-5, "young_modulus": 2e11, "yield_stress": 2e8, "length_factor": 0.7}},
     {"kind": "dynamic", "shape": {"box": {}}, "section": {"radius": 0.05, "thickness": 0.01}},
     {"kind": "dynamic", "shape": {"box": {}}, "section": {"width": 0.05, "height": 0.125}},
+    {"name": "door", "kind": "dynamic", "shape": {"box": {}}, "yields": {"impulse": 50, "cell": 0.2, "young_modulus": 2e6,
+     "poisson_ratio": 0.25, "damping": 0.01, "yield_stress": 2e4, "thickness": 0.003, "freeze_below": 0.02, "freeze_after": 0.5}},
     {"shape": {"capsule": {}}, "sensor": true}, {"shape": {"cylinder": {}}}],
   "ropes": [
     {"name": "rope", "stepper": "verlet", "hook_point": [0, 3, 0], "direction": [0, -1, 0], "total_mass": 2,

@@ -335,6 +335,23 @@ TEST_SUITE("world/yielding") {
     CHECK(world.find_place({.body = door, .connection_point = "left"}).has_value());
   }
 
+  TEST_CASE("a soft door does not touch the post that it is hooked to") {
+    World world = make_world(sleepless_space(8));
+    const BodyId post = take(world.add_body({.shape = Shape::box({Real(0.1), Real(0.5), Real(0.1)}),
+                                             .position = {-0.33, 0, 0}}));  // They overlap.
+    const BodyId door = take(world.add_body(plate()));
+    (void)take(world.add_hook(
+        {.kind = HookKind::kHinge, .a = {.body = post}, .b = {.body = door}, .anchor = {-0.3, 0, 0}}));
+    (void)take(world.add_body(ball(6)));
+    const double before = world.measure().energy.total();
+    REQUIRE(run_until(world, door, true));
+    for (int i = 0; i < 60; ++i) {
+      REQUIRE(world.step(kFrame).healthy());
+      CHECK(world.measure().energy.total() < before * (1 + 1e-5));
+    }
+    CHECK(std::abs(world.angular_velocity(door).y) > 1);
+  }
+
   TEST_CASE("one hinge alone keeps the axis of a soft door") {
     World world = make_world(sleepless_space(8));
     const BodyId door = take(world.add_body(plate()));

@@ -165,6 +165,15 @@ void prepare_cloth(const Simulation& simulation, const SceneObject& object, Figu
   if (figure.surface) tear_surface(triangles, splits, *figure.surface);
 }
 
+/// The surface of a solid without a model.
+ClothSurface surface_from(const std::vector<DVec3>& places,
+                          std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::vector<Vec3> points;
+  points.reserve(places.size());
+  for (const DVec3& place : places) points.push_back(vector_cast<float>(place - places.front()));
+  return make_solid_surface(points, triangles);
+}
+
 void prepare_solid(const Simulation& simulation, const SceneObject& object, Figure& figure) {
   const std::vector<std::uint32_t> splits = simulation.world().splits(object.solid);
   figure.splits = splits.size();
@@ -177,11 +186,29 @@ void prepare_solid(const Simulation& simulation, const SceneObject& object, Figu
     if (!figure.ranges.empty() && figure.ranges.back().count > 0) figure.ranges.back().count += opened;
     return;
   }
-  const std::vector<DVec3> places = simulation.world().surface(object.solid);
-  std::vector<Vec3> points;
-  points.reserve(places.size());
-  for (const DVec3& place : places) points.push_back(vector_cast<float>(place - places.front()));
-  figure.surface = make_solid_surface(points, simulation.world().triangles(object.solid));
+  figure.surface =
+      surface_from(simulation.world().surface(object.solid), simulation.world().triangles(object.solid));
+}
+
+/// A body that is soft, or has a dent, is drawn as a solid is.
+void prepare_reshaped(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
+                      Figure& figure) {
+  const World& world = simulation.world();
+  // A model that had to be closed has other vertices than what moves.
+  const bool has_model = object.shape.kind == ShapeKind::kMesh && object.model != nullptr &&
+                         world.triangles(object.body).size() * 3 == object.model->indices.size();
+  figure.kind = SceneObject::Kind::kSolid;
+  figure.reshaped = true;
+  const Look look = {object.kind, object.material, object.look, has_model ? object.model.get() : nullptr};
+  figure.ranges = ranges_of(simulation.scene(), look, textures);
+  // Faces are told apart by their directions, so that the body is looked at as if it were not turned.
+  const Quat turn = world.pose(object.body).rotation;
+  std::vector<DVec3> places = world.surface(object.body);
+  for (DVec3& place : places)
+    place = vector_cast<double>(
+        rotate(conjugate(turn), vector_cast<Real>(place - world.pose(object.body).position)));
+  figure.surface =
+      has_model ? make_model_surface(*object.model) : surface_from(places, world.triangles(object.body));
 }
 
 void prepare_points(const Simulation& simulation, const SceneObject& object, Figure& figure) {
@@ -349,6 +376,10 @@ Figure make_figure(const Simulation& simulation, const SceneObject& object, cons
   Figure figure;
   figure.kind = object.kind;
   figure.radius = object.kind == SceneObject::Kind::kHook ? kHookRadius : static_cast<float>(object.radius);
+  if (object.kind == SceneObject::Kind::kBody && simulation.world().is_reshaped(object.body)) {
+    prepare_reshaped(simulation, object, textures, figure);
+    return figure;
+  }
   if (object.kind == SceneObject::Kind::kBody) {
     figure.solids = solids_of(simulation.scene(), object, textures, geometries);
     figure.half_space = object.shape.kind == ShapeKind::kHalfSpace;

@@ -58,11 +58,12 @@ struct Figure {
   SceneObject::Kind kind = SceneObject::Kind::kBody;
   float radius = 0;                     ///< Radius of a rope [m].
   std::size_t splits = 0;               ///< Points that a cloth or a solid has got by tearing.
+  bool reshaped = false;                ///< A body that is drawn by its surface, as a solid is.
   std::vector<PaintedRange> ranges;     ///< Set for all but bodies; at least one.
   std::vector<FigureSolid> solids;      ///< Set for a body.
   bool half_space = false;              ///< Whether the body is a half-space.
   float width = 0;                      ///< Width of a grid of cloth [m].
-  std::optional<ClothSurface> surface;  ///< Set for a cloth or solid.
+  std::optional<ClothSurface> surface;  ///< Set for a cloth, a solid, or a body that is reshaped.
   std::vector<float> radii;             ///< Radii of particles [m].
   std::vector<SpringDesc> springs;      ///< Springs of particles.
   std::vector<FigureLoad> loads;        ///< Weights of ropes and cloths.

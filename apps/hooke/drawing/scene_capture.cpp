@@ -47,7 +47,9 @@ Viewpoint view_of(const SceneState& state) {
 /// Copies where an object is.
 void copy_place(const World& world, const SceneObject& object, ObjectState& state) {
   if (object.kind == SceneObject::Kind::kBody) state.pose = world.pose(object.body);
-  if (object.kind == SceneObject::Kind::kHook) {
+  if (state.figure->reshaped) {
+    state.points = world.surface(object.body);
+  } else if (object.kind == SceneObject::Kind::kHook) {
     const std::array<DVec3, 2> anchors = world.hook_anchors(object.hook);
     state.points.assign(anchors.begin(), anchors.end());
   } else if (object.kind == SceneObject::Kind::kSolid) {
@@ -90,11 +92,12 @@ void paint_figure(render::Color color, Figure& figure) {
 
 std::shared_ptr<Figure> SceneCapture::find_figure(const Simulation& simulation, const SceneObject& object) {
   std::shared_ptr<Figure>& figure = figures_[key_of(object)];
-  // What has torn or was cut is a new figure; who draws may still have the one before.
+  // What has torn, was cut or has a dent is a new figure; who draws may still have the one before.
   const World& world = simulation.world();
   const std::size_t splits = world.splits(object.cloth).size() + world.splits(object.solid).size();
   const bool is_torn = figure != nullptr && figure->splits != splits;
-  if (figure == nullptr || is_torn) {
+  const bool is_other = figure != nullptr && figure->reshaped != world.is_reshaped(object.body);
+  if (figure == nullptr || is_torn || is_other) {
     figure = std::make_shared<Figure>(make_figure(
         simulation, object,
         [this](const std::string& path, const ImageBytes& bytes) { return find_texture(path, bytes); },

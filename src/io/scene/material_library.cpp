@@ -193,6 +193,7 @@ class Taking {
     JsonNode* parts = parts_of(body);
     if (parts == nullptr) {
       if (body.find("mass") == nullptr) give(body, "density", "density");
+      if (body.find("fracture") == nullptr) give(body, "yields", "yields");
       return;
     }
     for (JsonNode& part : parts->children) {

@@ -3,6 +3,7 @@
 #include "io/scene/material_library.h"
 #include "io/scene/scene_event.h"
 #include "io/scene/scene_source.h"
+#include "io/scene/scene_subject.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -23,9 +24,6 @@ struct NamedObject {
   const SceneBody* body = nullptr;
   std::optional<HookKind> hook = {};
 };
-
-/// What a quantity is measured on. Hooks and ropes twist, hooks and the world have gaps, and much breaks.
-enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kTwists, kGaps, kBreaks };
 
 /// Whether objects of a kind may snap, tear or be cut.
 bool breaks(SceneObject::Kind kind) {
@@ -509,40 +507,6 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
   }
 }
 
-Subject subject_of(SceneExpectation::Quantity quantity) {
-  using Quantity = SceneExpectation::Quantity;
-  switch (quantity) {
-    case Quantity::kX:
-    case Quantity::kY:
-    case Quantity::kZ:
-    case Quantity::kHeight:
-    case Quantity::kSpeed:
-      return Subject::kPoint;
-    case Quantity::kAngularSpeed:
-    case Quantity::kTilt:
-      return Subject::kBody;
-    case Quantity::kLowest:
-    case Quantity::kHighest:
-      return Subject::kObject;
-    case Quantity::kExtension:
-    case Quantity::kTension:
-    case Quantity::kTwist:
-      return Subject::kRope;
-    case Quantity::kTorque:
-      return Subject::kTwists;
-    case Quantity::kForce:
-    case Quantity::kAngle:
-    case Quantity::kWay:
-      return Subject::kHook;
-    case Quantity::kGap:
-      return Subject::kGaps;
-    case Quantity::kBroken:
-      return Subject::kBreaks;
-    default:
-      return Subject::kWorld;
-  }
-}
-
 void Checker::check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
                             const std::string& path) {
   using Kind = SceneObject::Kind;
@@ -558,6 +522,8 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
       wrong(" is neither a hook nor a rope nor a cloth nor a solid");
   } else if (subject == Subject::kBody) {
     if (!body) wrong(" is not a body");
+  } else if (subject == Subject::kYields) {
+    if (object.body == nullptr || !object.body->desc.yields) wrong(" is no body with 'yields'");
   } else if (!has_points(object.kind) && !(body && subject == Subject::kPoint)) {
     wrong(" has no points");
   } else if (subject == Subject::kRope && object.kind != Kind::kRope) {
@@ -589,7 +555,8 @@ void Checker::check_expectation(const SceneExpectation& expectation, const std::
     return;
   }
   if (expectation.of.empty()) {
-    if (subject == Subject::kGaps || subject == Subject::kBreaks) return;
+    const bool sums = subject == Subject::kGaps || subject == Subject::kBreaks || subject == Subject::kYields;
+    if (sums) return;
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'of', the name of an object");
     return;
   }

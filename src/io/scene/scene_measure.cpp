@@ -102,6 +102,11 @@ double count_broken(const World& world, const SceneObject& object) {
   }
 }
 
+/// 1 for a body that is soft now, 0 for others.
+double count_soft(const World& world, const SceneObject& object) {
+  return world.soft_form(object.body) != SolidId{} ? 1 : 0;
+}
+
 double hook_figure(const World& world, const SceneObject& object, Quantity quantity) {
   switch (quantity) {
     case Quantity::kForce:
@@ -128,6 +133,10 @@ double object_figure(const SimulationData& data, const SceneObject& object, cons
       return extension_of(world, object);
     case Quantity::kBroken:
       return count_broken(world, object);
+    case Quantity::kYielded:
+      return object.yielded;
+    case Quantity::kSoft:
+      return count_soft(world, object);
     case Quantity::kTension:
     case Quantity::kTwist:
     case Quantity::kTorque:
@@ -135,6 +144,13 @@ double object_figure(const SimulationData& data, const SceneObject& object, cons
     default:
       return point_figure(data, object, wanted);
   }
+}
+
+template <class Figure>
+double sum_of(const SimulationData& data, const Figure& figure) {
+  double sum = 0;
+  for (const SceneObject& object : data.objects) sum += figure(object);
+  return sum;
 }
 
 double world_figure(const SimulationData& data, Quantity quantity) {
@@ -166,9 +182,11 @@ double world_figure(const SimulationData& data, Quantity quantity) {
     case Quantity::kGap:
       return measured.largest_gap;
     case Quantity::kBroken:
-      return std::accumulate(
-          data.objects.begin(), data.objects.end(), 0.0,
-          [&](double sum, const SceneObject& object) { return sum + count_broken(data.world, object); });
+      return sum_of(data, [&](const SceneObject& object) { return count_broken(data.world, object); });
+    case Quantity::kYielded:
+      return sum_of(data, [](const SceneObject& object) { return object.yielded; });
+    case Quantity::kSoft:
+      return sum_of(data, [&](const SceneObject& object) { return count_soft(data.world, object); });
     default:
       return kNothing;
   }

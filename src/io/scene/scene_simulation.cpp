@@ -203,6 +203,24 @@ void note_snaps_and_tears(SimulationData& data) {
   }
 }
 
+/// Notes the first blow of each body that yielded, and its last freeze.
+void note_yields(SimulationData& data) {
+  const auto note = [&](BodyId body, auto&& change) {
+    const auto object = std::find_if(data.objects.begin(), data.objects.end(),
+                                     [&](const SceneObject& one) { return one.body == body; });
+    if (object == data.objects.end()) return;
+    data.saved_objects = nullptr;
+    change(*object);
+  };
+  for (const YieldEvent& event : data.world.events().yields) {
+    note(event.body, [&](SceneObject& object) {
+      if (object.yielded++ == 0) object.blow = event;
+    });
+  }
+  for (const FreezeEvent& event : data.world.events().freezes)
+    note(event.body, [&](SceneObject& object) { object.froze = event; });
+}
+
 /// Ends of the edge of a blade in the world [m].
 std::array<DVec3, 2> edge_of(const World& world, const SceneObject& blade) {
   const Pose pose = world.pose(blade.body);
@@ -321,6 +339,7 @@ StepReport Simulation::step() {
   const StepReport report = data_->world.step(data_->scene.dt);
   note_broken_hooks(*data_);
   note_snaps_and_tears(*data_);
+  note_yields(*data_);
   if (report.moved && !edges.empty()) cut_by_blades(edges, *data_);
   data_->contacts = report.contacts;
   if (report.moved) evaluate_due(*data_);

@@ -329,6 +329,9 @@ const Kind& kind_of<SceneMaterial>() {
                                                  "Of ropes that give no radius themselves."),
                  field<&SceneMaterial::strength>("strength", "N", kPositive,
                                                  "Of ropes that do not give it themselves."),
+                 field<&SceneMaterial::yields>(
+                     "yields", "", kAny,
+                     "Of bodies that move, are no compounds and do not give it themselves."),
                  field<&SceneMaterial::friction>(
                      "friction", "", between(0, 100),
                      "Coulomb coefficient while sliding; a contact uses sqrt(a b) of the two surfaces."),
@@ -645,7 +648,9 @@ std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
                                         {"angle", static_cast<int>(Quantity::kAngle)},
                                         {"way", static_cast<int>(Quantity::kWay)},
                                         {"gap", static_cast<int>(Quantity::kGap)},
-                                        {"broken", static_cast<int>(Quantity::kBroken)}};
+                                        {"broken", static_cast<int>(Quantity::kBroken)},
+                                        {"yielded", static_cast<int>(Quantity::kYielded)},
+                                        {"soft", static_cast<int>(Quantity::kSoft)}};
   return kNames;
 }
 

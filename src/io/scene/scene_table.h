@@ -77,6 +77,8 @@ const Kind& kind_of<SceneBlade>();
 template <>
 const Kind& kind_of<SceneSection>();
 template <>
+const Kind& kind_of<YieldsDesc>();
+template <>
 const Kind& kind_of<ScenePair>();
 template <>
 const Kind& kind_of<SceneHook>();

@@ -128,6 +128,10 @@ std::vector<Field> body_rows() {
           "section", "", kAny,
           "Cross section of a bar, which two hooks hold: `hooke load` then tells where it "
           "yields and buckles. It changes no motion."),
+      field<kDesc, &BodyDesc::yields>(
+          "yields", "", kAny,
+          "Makes a dynamic body of one shape a soft solid where it is hit hard, and a body of its new shape "
+          "when that has come to rest in itself."),
       field<&SceneBody::visual>("visual", "", kNotEmpty,
                                 "What is drawn in place of the shape: a name in `meshes`."),
       field<kDesc, &BodyDesc::kind>("kind", "", kAny,
@@ -198,6 +202,8 @@ bool check_body(Reader& reader, const JsonNode& node, const void* object) {
   if (!check_tagged<SceneBody>(reader, node, object)) return false;
   const auto& body = *static_cast<const SceneBody*>(object);
   if (!check_blade(reader, node, body)) return false;
+  if (body.fracture && body.desc.yields)
+    return reader.fail(node, ErrorCode::kOutOfRange, "'fracture' and 'yields' are one or the other");
   if (!body.fracture) return true;
   if (body.desc.kind != BodyKind::kDynamic) {
     return reader.fail(node, ErrorCode::kOutOfRange,
@@ -287,6 +293,36 @@ const Kind& kind_of<SceneSection>() {
 }
 
 template <>
+const Kind& kind_of<YieldsDesc>() {
+  static const Kind kind = {
+      .name = "yields",
+      .help =
+          "When a body becomes a soft solid, of what material that is, and when it is rigid again. Its hooks "
+          "are `ball`, `hinge`, `fixed`, `distance` or `rope_slide`.",
+      .fields =
+          {field<&YieldsDesc::impulse>("impulse", "N s", kPositive,
+                                       "It yields in the step in which one other object gives it more."),
+           field<&YieldsDesc::cell>("cell", "m", kNotNegative,
+                                    "Size of the solid's cells, about; 0: a tenth of its longest side."),
+           field<&YieldsDesc::young_modulus>("young_modulus", "Pa", between(1e-6, 1e12),
+                                             "Stiffness of the solid."),
+           field<&YieldsDesc::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
+                                             "How much it narrows when it is stretched."),
+           field<&YieldsDesc::damping>("damping", "s", between(0, 0.1), "Its viscosity over stiffness."),
+           field<&YieldsDesc::yield_stress>("yield_stress", "Pa", kPositiveOrRigid,
+                                            "Stress above which it dents for good."),
+           field<&YieldsDesc::thickness>("thickness", "m", kPositive,
+                                         "Half of it is the distance its points keep."),
+           field<&YieldsDesc::freeze_below>(
+               "freeze_below", "m/s", kPositive,
+               "Largest speed of a point against the whole at which it counts as at rest in itself."),
+           field<&YieldsDesc::freeze_after>("freeze_after", "s", kNotNegative,
+                                            "Time at rest in itself after which it is rigid.")},
+      .defaults = defaults_of<YieldsDesc>};
+  return kind;
+}
+
+template <>
 const Kind& kind_of<ScenePart>() {
   constexpr auto kDesc = &ScenePart::desc;
   static const Kind kind = {
@@ -335,11 +371,14 @@ const Kind& kind_of<ScenePair>() {
 }
 
 std::span<const Kind* const> body_kinds() {
-  static const Kind* const kinds[] = {
-      &kind_of<SceneBody>(),  &shape_kind(),           &BodyShape::half_space(), &BodyShape::sphere(),
-      &BodyShape::box(),      &BodyShape::capsule(),   &BodyShape::cylinder(),   &BodyShape::cone(),
-      &kind_of<ScenePart>(),  &part_shape_kind(),      &kind_of<ScenePair>(),    &kind_of<SceneFracture>(),
-      &kind_of<SceneBlade>(), &kind_of<SceneSection>()};
+  static const Kind* const kinds[] = {&kind_of<SceneBody>(),    &shape_kind(),
+                                      &BodyShape::half_space(), &BodyShape::sphere(),
+                                      &BodyShape::box(),        &BodyShape::capsule(),
+                                      &BodyShape::cylinder(),   &BodyShape::cone(),
+                                      &kind_of<ScenePart>(),    &part_shape_kind(),
+                                      &kind_of<ScenePair>(),    &kind_of<SceneFracture>(),
+                                      &kind_of<SceneBlade>(),   &kind_of<SceneSection>(),
+                                      &kind_of<YieldsDesc>()};
   return kinds;
 }
 
