@@ -48,9 +48,8 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_step(w, dt);
 }
 
-/// Solves one particle substep. Soft rows come before yarns, these before tethers and limits, which must
-/// hold. Loaded cloths are solved again as a whole, then ropes with what depends on them. Contacts come last:
-/// nothing pushes a particle into a body then.
+/// Solves one particle substep: soft rows, yarns, tethers, loaded cloths as a whole, then ropes with what
+/// depends on them. Contacts come last: nothing pushes a particle into a body then.
 void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep, bool first_of_step) {
   world::begin_particle_substep(w, h);
   world::accelerate_particles(w, end_time, h, first_of_substep);
@@ -71,9 +70,9 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::move_particles(w, h);
 }
 
-/// Solves one substep of bodies. Impacts with restitution come first, in order of time; contacts follow with
-/// bias, and hooks with all that depends on them. Contacts of what has moved are found again. Last, contacts
-/// without bias and with friction take out the speed that pushed overlaps apart.
+/// Solves one substep of bodies: impacts with restitution, in order of time; contacts with bias, and hooks
+/// with all that depends on them. When bodies have moved, contacts are refreshed, and solved without bias,
+/// which takes out the speed that pushed overlaps apart.
 void substep(WorldData& w, int i, double begin_time, Real h) {
   const int particle_substeps = w.tables.desc.particle_substeps;
   const Real particle_h = h / static_cast<Real>(particle_substeps);
@@ -140,8 +139,8 @@ StepReport World::step(Real dt) {
   WorldData& w = *claim;
   world::Stepping stepping(w);
   world::watch_for_blows(w, static_cast<double>(dt));
-  while (!advance(w, static_cast<double>(dt), dt / static_cast<Real>(w.tables.desc.substeps), report)) {
-  }
+  const Real h = dt / static_cast<Real>(w.tables.desc.substeps);
+  while (!advance(w, static_cast<double>(dt), h, report)) continue;
   world::Stopwatch watch;
   finish(w, static_cast<double>(dt), report);
   report.finish_ms = watch.lap_ms();
