@@ -30,8 +30,6 @@ namespace hooke {
 
 namespace {
 
-using state::SpringClass;
-
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
   world::refresh_hooks(w);
@@ -57,11 +55,11 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::begin_coupled_groups(w, h, first_of_substep);
   world::share_passing_masses(w, h, first_of_step);
   world::find_loaded_cloths(w);
-  world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
+  world::solve_springs(w, h, state::SpringClass::kStretch, state::SpringClass::kBend);
   world::solve_bends(w);
   world::solve_yarns(w);
   world::solve_solids(w, h);
-  world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
+  world::solve_springs(w, h, state::SpringClass::kTether, state::SpringClass::kLimit);
   world::solve_loaded_cloths(w, h);
   world::give_back_passing_masses(w);
   world::solve_ropes(w, end_time, h, first_of_step);
