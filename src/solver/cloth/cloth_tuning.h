@@ -36,9 +36,9 @@ inline constexpr int kMostClothHalvings = 10;
 inline constexpr double kClothMotionError = 1e-3;
 
 /// Mass of a point with what it is hooked to, over its own, from which on that does not give way [ratio]: it
-/// takes up momentum. Larger: what the error makes of momentum goes to points that are hooked to the world,
-/// and a hammock threw a body at 108 m/s.
-inline constexpr double kMassThatHolds = 1e4;
+/// holds the cloth, and takes up momentum. It is under the inverse of kLeastMassShare, by which masses that
+/// hooks lend are bounded.
+inline constexpr double kMassThatHolds = 5e4;
 
 /// Passes over single springs in a substep, at most [1]; one takes about 4 ns. Smaller: what is left
 /// stretches. Larger: what comes to no end costs as much.

@@ -84,7 +84,10 @@ void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tab
     if (behind == bearings.begin()) return;
     const ClothBearing& bearing = *std::prev(behind);
     if (particle >= tables.objects[bearing.object].particles.end()) return;
-    if (mass_of(tables, particle) > bearing.most_mass)
+    const Real mass = mass_of(tables, particle);
+    // What does not give way holds the cloth, and is no load.
+    if (mass > bearing.most_mass &&
+        mass < static_cast<Real>(kMassThatHolds) * tables.particles.mass[particle])
       loaded.marks[static_cast<std::size_t>(std::prev(behind) - bearings.begin())] = 1;
   };
   for (const std::uint32_t particle : loaded.lent) look_at(particle);
