@@ -69,16 +69,27 @@ void describe(CLI::App& app, RunOptions& options) {
       "  hooke run scenes/paper/fig3.json --stepper rk4");
 }
 
+/// Opens the file of steps and writes its header, if one is asked for.
+Result<std::optional<OutputFile>> open_steps(const RunOptions& options) {
+  if (options.csv.empty()) return std::optional<OutputFile>();
+  Result<OutputFile> created = OutputFile::create(options.csv);
+  if (!created) return created.error();
+  created.value().write(csv_header());
+  return std::optional<OutputFile>(std::move(created).value());
+}
+
+/// Prints the hash of the state after step `step`, at the steps that it is asked for.
+void print_hash(const Simulation& simulation, const RunOptions& options, std::uint64_t step) {
+  if (options.hash_every == 0 || step % options.hash_every != 0) return;
+  std::printf("%s %s\n", std::to_string(step).c_str(), hash_text(simulation.world().state_hash()).c_str());
+}
+
 /// Steps to the end, and fills the record and the file of steps.
 Result<void> simulate(Simulation& simulation, const RunOptions& options, std::uint64_t steps,
                       RunRecord& record) {
-  std::optional<OutputFile> csv;
-  if (!options.csv.empty()) {
-    auto created = OutputFile::create(options.csv);
-    if (!created) return created.error();
-    csv.emplace(std::move(created).value());
-    csv->write(csv_header());
-  }
+  Result<std::optional<OutputFile>> steps_file = open_steps(options);
+  if (!steps_file) return steps_file.error();
+  std::optional<OutputFile>& csv = steps_file.value();
   record.start = simulation.world().measure().energy;
   RunWatch watch(simulation);
   std::optional<RunSeries> series;
@@ -95,10 +106,7 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     watch.look(simulation, step);
     if (series) series->look(simulation, step.contacts);
     if (csv) csv->write(csv_line(simulation.world(), step.contacts));
-    if (options.hash_every > 0 && (i + 1) % options.hash_every == 0) {
-      std::printf("%s %s\n", std::to_string(i + 1).c_str(),
-                  hash_text(simulation.world().state_hash()).c_str());
-    }
+    print_hash(simulation, options, i + 1);
     progress.show(i + 1);
   }
   record.problems = watch.warnings();

@@ -167,9 +167,8 @@ Products solve_symmetric(std::array<Products, kProducts> a, Products b) {
   return x;
 }
 
-/// Masses of points that have the mass of the body and, as far as no point becomes much lighter for it, its
-/// center and inertia.
-std::vector<double> fitted_masses(const TetrahedralMesh& mesh, const state::BodyMass& mass) {
+/// Shares of a mass that points have by the volume of their tetrahedra.
+std::vector<double> masses_by_volume(const TetrahedralMesh& mesh, double mass) {
   std::vector<double> share(mesh.points.size(), 0.0);
   const auto& x = mesh.points;
   double whole = 0;
@@ -178,13 +177,21 @@ std::vector<double> fitted_masses(const TetrahedralMesh& mesh, const state::Body
     for (const std::uint32_t p : t) share[p] += volume;
     whole += 4 * volume;
   }
+  for (double& m : share) m *= mass / whole;
+  return share;
+}
+
+/// Masses of points that have the mass of the body and, as far as no point becomes much lighter for it, its
+/// center and inertia.
+std::vector<double> fitted_masses(const TetrahedralMesh& mesh, const state::BodyMass& mass) {
+  const auto& x = mesh.points;
+  const std::vector<double> share = masses_by_volume(mesh, static_cast<double>(mass.mass));
   double unit = 0;
   for (const DVec3& p : x) unit = std::max(unit, length(p));
   std::array<Products, kProducts> a = {};
   const Products wanted = wanted_sums(mass, unit);
   Products lacking = wanted;
   for (std::size_t i = 0; i < share.size(); ++i) {
-    share[i] *= static_cast<double>(mass.mass) / whole;
     const Products phi = products_of(1 / unit * x[i]);
     for (std::size_t j = 0; j < kProducts; ++j) {
       lacking[j] -= share[i] * phi[j];

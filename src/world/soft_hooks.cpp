@@ -41,9 +41,10 @@ DQuat frame_rotation(const HookPlace& end, const Tables& t) {
 DVec3 place_of(const HookPlace& end, const Tables& t) {
   if (end.is_point()) {
     DVec3 place = t.objects[end.object].origin;
-    for (std::uint32_t i = 0; i < end.particle_count; ++i)
+    for (std::uint32_t i = 0; i < end.particle_count; ++i) {
       place +=
           static_cast<double>(end.weight[i]) * vector_cast<double>(t.particles.position[end.particle[i]].x);
+    }
     return place;
   }
   if (end.body == HookPlace::kWorld) return end.anchor;

@@ -204,9 +204,10 @@ void prepare_reshaped(const Simulation& simulation, const SceneObject& object, c
   // Faces are told apart by their directions, so that the body is looked at as if it were not turned.
   const Quat turn = world.pose(object.body).rotation;
   std::vector<DVec3> places = world.surface(object.body);
-  for (DVec3& place : places)
+  for (DVec3& place : places) {
     place = vector_cast<double>(
         rotate(conjugate(turn), vector_cast<Real>(place - world.pose(object.body).position)));
+  }
   figure.surface =
       has_model ? make_model_surface(*object.model) : surface_from(places, world.triangles(object.body));
 }

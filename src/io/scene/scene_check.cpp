@@ -507,27 +507,43 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
   }
 }
 
+/// Says why a quantity cannot be measured on an object, or null if it can.
+const char* why_not_subject(Subject subject, const NamedObject& object) {
+  using Kind = SceneObject::Kind;
+  switch (subject) {
+    case Subject::kHook:
+    case Subject::kGaps:
+      return object.kind == Kind::kHook ? nullptr : " is not a hook";
+    case Subject::kBreaks:
+      if (object.kind == Kind::kHook || breaks(object.kind)) return nullptr;
+      return " is neither a hook nor a rope nor a cloth nor a solid";
+    case Subject::kBody:
+      return object.kind == Kind::kBody ? nullptr : " is not a body";
+    case Subject::kYields:
+      return object.body != nullptr && object.body->desc.yields ? nullptr : " is no body with 'yields'";
+    case Subject::kPoint:
+      return has_points(object.kind) || object.kind == Kind::kBody ? nullptr : " has no points";
+    default:
+      break;
+  }
+  if (!has_points(object.kind)) return " has no points";
+  return subject == Subject::kRope && object.kind != Kind::kRope ? " is not a rope" : nullptr;
+}
+
+/// Whether a quantity may be given a point or segment.
+bool is_measured_at_points(Subject subject) {
+  return subject == Subject::kPoint || subject == Subject::kRope || subject == Subject::kObject;
+}
+
 void Checker::check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
                             const std::string& path) {
   using Kind = SceneObject::Kind;
-  const auto wrong = [&](const char* reason) {
-    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + reason);
-  };
   const bool body = object.kind == Kind::kBody;
   if (subject == Subject::kTwists) subject = object.kind == Kind::kRope ? Subject::kRope : Subject::kHook;
-  if (subject == Subject::kHook || subject == Subject::kGaps) {
-    if (object.kind != Kind::kHook) wrong(" is not a hook");
-  } else if (subject == Subject::kBreaks) {
-    if (object.kind != Kind::kHook && !breaks(object.kind))
-      wrong(" is neither a hook nor a rope nor a cloth nor a solid");
-  } else if (subject == Subject::kBody) {
-    if (!body) wrong(" is not a body");
-  } else if (subject == Subject::kYields) {
-    if (object.body == nullptr || !object.body->desc.yields) wrong(" is no body with 'yields'");
-  } else if (!has_points(object.kind) && !(body && subject == Subject::kPoint)) {
-    wrong(" has no points");
-  } else if (subject == Subject::kRope && object.kind != Kind::kRope) {
-    wrong(" is not a rope");
+  if (const char* reason = why_not_subject(subject, object)) {
+    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + reason);
+  } else if (!is_measured_at_points(subject)) {
+    return;
   } else if (subject == Subject::kPoint && !body && !expectation.point.has_value()) {
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'point'");
   } else if (body && expectation.point.has_value()) {
