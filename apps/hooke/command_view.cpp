@@ -58,9 +58,9 @@ bool is_model(const std::string& path) {
 }
 
 /// Makes a scene with the model standing on a ground.
-Result<Scene> scene_of_model(const CommandOptions& options) {
-  const ImportOptions import = {.fit = options.fit.value_or(1)};
-  const auto model = import_model(options.path, import);
+Result<Scene> scene_of_model(const std::string& file, std::optional<double> fit) {
+  const ImportOptions import = {.fit = fit.value_or(1)};
+  const auto model = import_model(file, import);
   if (!model) return model.error();
   float lowest = 0;
   for (const ModelVertex& vertex : model.value().vertices) {
@@ -68,7 +68,7 @@ Result<Scene> scene_of_model(const CommandOptions& options) {
         &vertex == model.value().vertices.data() ? vertex.position[1] : std::min(lowest, vertex.position[1]);
   }
   Scene scene;
-  const std::filesystem::path path = options.path;
+  const std::filesystem::path path = file;
   scene.title = path.filename().string();
   // Paths of meshes are relative to the scene, so that the scene gets a path beside the model.
   scene.path = (path.parent_path() / "model.json").string();
@@ -83,19 +83,22 @@ Result<Scene> scene_of_model(const CommandOptions& options) {
   return scene;
 }
 
-/// Returns how the session makes its simulation. A scene was read before; a model is read by the loader.
-Loader loader_of(const CommandOptions& options, std::optional<Scene> scene) {
-  return [options, scene = std::move(scene)](
-             const std::function<void(const std::string&)>& progress) -> Loaded<Simulation> {
-    progress(std::filesystem::path(options.path).filename().string());
-    Scene made;
-    if (scene) {
-      made = *scene;
-    } else {
-      auto of_model = scene_of_model(options);
-      if (!of_model) return {.errors = {of_model.error()}};
-      made = std::move(of_model).value();
-    }
+/// Reads a scene file, or makes the scene of a model.
+Loaded<SceneDocument> read(const CommandOptions& options, const std::string& file) {
+  if (!is_model(file)) return read_document(file);
+  auto scene = scene_of_model(file, options.fit);
+  if (!scene) return {.errors = {scene.error()}};
+  std::string text = write_scene(scene.value());
+  return {.value = SceneDocument{file, std::move(text), std::move(scene).value()}};
+}
+
+/// Returns how the session gets scenes.
+Loader loader_of(const CommandOptions& options) {
+  Loader loader;
+  loader.read = [options](const std::string& file) { return read(options, file); };
+  loader.build = [options](const Scene& scene, const std::function<void(const std::string&)>& progress) {
+    progress(std::filesystem::path(scene.path).filename().string());
+    Scene made = scene;
     apply(options.overrides, made.world);
     LoadOptions load = load_options();
     load.progress = [&progress, line = load.progress](std::string_view what, double part) {
@@ -106,6 +109,7 @@ Loader loader_of(const CommandOptions& options, std::optional<Scene> scene) {
     for (const Error& warning : built.warnings) warn(warning);
     return built;
   };
+  return loader;
 }
 
 }  // namespace
@@ -132,7 +136,7 @@ int command_view(Arguments arguments) {
   view.log = options.log;
   SessionOptions playing = {.playing = !options.paused, .stop_time = options.seconds};
   if (options.memory) playing.timeline_budget = static_cast<std::size_t>(*options.memory * (1 << 20));
-  Session session(loader_of(options, std::move(scene)), playing);
+  Session session(options.path, loader_of(options), playing);
   const auto shown = run_view(session, view);
   if (!shown) return report(shown.error());
   const auto last = session.view();

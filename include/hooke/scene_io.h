@@ -462,6 +462,14 @@ struct Loaded {
 /// complete. Errors: a file that cannot be written.
 [[nodiscard]] Result<void> save_scene(const Scene& scene, const std::string& path);
 
+/// Returns the text of a scene file in which the value at `path`, such as "ropes[0].total_mass", is `value`,
+/// written as JSON. Comments, order and everything else stay as they are; keys that are missing on the way
+/// are added at the end of their object. It does not check what the value means: parse_scene does. Errors: a
+/// text or a value that is no JSON, an element that a list does not have, a value on the way that has no
+/// keys.
+[[nodiscard]] Result<std::string> edit_scene_text(std::string text, std::string_view path,
+                                                  std::string_view value);
+
 /// Writes the JSON schema (draft 7) of the format.
 [[nodiscard]] std::string scene_schema();
 

@@ -234,21 +234,27 @@ TEST_SUITE("session/live_scene") {
 }
 
 TEST_SUITE("session/session") {
+  Loaded<Simulation> build(const Scene& scene, const std::function<void(const std::string&)>& progress) {
+    progress("building");
+    return Simulation::create(scene);
+  }
+
+  /// Reads a text in place of a file.
   Loader loader_of(const char* text, double seconds = 0) {
-    return [text, seconds](const std::function<void(const std::string&)>& progress) -> Loaded<Simulation> {
-      progress("reading");
+    const auto read = [text, seconds](const std::string& file) -> Loaded<SceneDocument> {
       std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
       Loaded<Scene> scene = parse_scene(text, "scene.json");
       if (!scene) return {.errors = std::move(scene.errors)};
-      return Simulation::create(std::move(*scene.value));
+      return {.value = SceneDocument{file, text, *std::move(scene.value)}};
     };
+    return {read, build};
   }
 
   constexpr double kLong = 120;  // Nothing waits for so long but on a machine that is stuck [s].
 
   TEST_CASE("while it loads, calls return at once, and commands wait") {
     const auto start = std::chrono::steady_clock::now();
-    Session session(loader_of(kScene, 1), {.playing = false});
+    Session session("", loader_of(kScene, 1), {.playing = false});
     const std::uint64_t number = session.post(MakeSteps{3});
     CHECK(session.view()->stage == SessionView::Stage::kLoading);
     CHECK(session.view()->step == 0);
@@ -264,7 +270,8 @@ TEST_SUITE("session/session") {
   }
 
   TEST_CASE("a scene that cannot be built says why") {
-    Session session(loader_of(R"({"version": 1, "bodies": [{"shape": {"sphere": {"radius": -1}}}]})"), {});
+    Session session("", loader_of(R"({"version": 1, "bodies": [{"shape": {"sphere": {"radius": -1}}}]})"),
+                    {});
     const auto view =
         session.wait_for([](const SessionView& v) { return v.stage == SessionView::Stage::kFailed; }, kLong);
     REQUIRE(view->errors.size() == 1);
@@ -273,7 +280,7 @@ TEST_SUITE("session/session") {
   }
 
   TEST_CASE("it plays in time and not faster, pauses, steps, rewinds and undoes") {
-    Session session(loader_of(kScene), {});
+    Session session("", loader_of(kScene), {});
     const auto start = std::chrono::steady_clock::now();
     auto view = session.wait_for([](const SessionView& v) { return v.step >= 20; }, kLong);
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
@@ -316,7 +323,7 @@ TEST_SUITE("session/session") {
   }
 
   TEST_CASE("it stops for good at its time") {
-    Session session(loader_of(kScene), {.stop_time = 0.2});
+    Session session("", loader_of(kScene), {.stop_time = 0.2});
     const auto view = session.wait_for([](const SessionView& v) { return v.time > 0 && !v.playing; }, kLong);
     CHECK(view->time == doctest::Approx(0.2).epsilon(0.01));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hooke/math.h"
+#include "hooke/session/scene_document.h"
 
 #include <string>
 #include <variant>
@@ -55,7 +56,13 @@ struct Remove {
   Ray ray = {};
 };
 
-using Action = std::variant<Grab, MoveHand, Release, Shoot, Drop, Pin, Tie, Remove>;
+/// Takes over what an edited scene says of gravity, wind and workers: see can_change_live.
+struct Edit {
+  SharedDocument document = {};
+  std::string what = {};  ///< What was changed, for the user.
+};
+
+using Action = std::variant<Grab, MoveHand, Release, Shoot, Drop, Pin, Tie, Remove, Edit>;
 
 /// What came of an action.
 struct Outcome {

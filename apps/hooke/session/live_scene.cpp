@@ -29,7 +29,8 @@ constexpr double kUsualReach = 0.5;  ///< [m]
 
 /// What undo calls an action; empty for one that belongs to a grip.
 std::string_view title_of(const Action& action) {
-  static constexpr std::string_view kTitles[] = {"grab", "", "", "shot", "drop", "pin", "tie", "removal"};
+  static constexpr std::string_view kTitles[] = {"grab", "",    "",        "shot", "drop",
+                                                 "pin",  "tie", "removal", "edit"};
   static_assert(std::size(kTitles) == std::variant_size_v<Action>);
   return kTitles[action.index()];
 }
@@ -93,8 +94,8 @@ std::string in_meters(double length) {
 
 }  // namespace
 
-LiveScene::LiveScene(Simulation simulation, std::size_t budget)
-    : simulation_(std::move(simulation)), timeline_(budget) {
+LiveScene::LiveScene(Simulation simulation, std::size_t budget, SharedDocument document)
+    : simulation_(std::move(simulation)), timeline_(budget), document_(std::move(document)) {
   last_step_ = step_count();
   timeline_.add(moment(""));
 }
@@ -105,6 +106,7 @@ Moment LiveScene::moment(std::string_view before) const {
           .step = step_count(),
           .actions = next_action_,
           .added = added_,
+          .document = document_,
           .before = std::string(before)};
 }
 
@@ -113,6 +115,7 @@ void LiveScene::go_to(const Moment& moment) {
   hand_ = moment.hand;
   next_action_ = moment.actions;
   added_ = moment.added;
+  document_ = moment.document;
 }
 
 Outcome LiveScene::act(const Action& action) {
@@ -125,6 +128,7 @@ Outcome LiveScene::act(const Action& action) {
   const bool has_future = last_step_ > step_count() || timeline_.actions().size() > next_action_;
   if (has_future) timeline_.cut(step_count(), next_action_);
   last_step_ = step_count();
+  undone_.clear();
   if (before) timeline_.add(std::move(*before));
   timeline_.log(step_count(), action);
   ++next_action_;
@@ -162,6 +166,7 @@ Outcome LiveScene::undo() {
   const Moment* before = timeline_.find_undo(next_action_);
   if (before == nullptr) return {false, "there is nothing to undo"};
   const Moment place = *before;
+  undone_.push_back({place, moment(""), timeline_.actions_from(place.actions), last_step_});
   go_to(place);
   timeline_.forget_undo(place.actions);
   timeline_.cut(place.step, place.actions);
@@ -169,14 +174,34 @@ Outcome LiveScene::undo() {
   return {true, "undone: " + place.before};
 }
 
+Outcome LiveScene::redo() {
+  if (undone_.empty()) return {false, "there is nothing to do again"};
+  Undone undone = std::move(undone_.back());
+  undone_.pop_back();
+  timeline_.cut(undone.before.step, undone.before.actions);
+  std::string text = "done again: " + undone.before.before;
+  timeline_.add(std::move(undone.before));
+  for (LoggedAction& logged : undone.actions) timeline_.log(logged.step, std::move(logged.action));
+  go_to(undone.after);
+  last_step_ = undone.last_step;
+  return {true, std::move(text)};
+}
+
 void LiveScene::restart() {
-  const Moment* start = timeline_.find(0);
-  if (start == nullptr) return;
-  const Moment place = *start;
+  const Moment place = timeline_.first();
+  const SharedDocument edited = document_;
   timeline_.cut(place.step, 0);
+  timeline_.forget_undo(0);
   go_to(place);
   next_action_ = 0;
   last_step_ = step_count();
+  undone_.clear();
+  if (document_ != edited) act(Edit{edited, "edits"});
+}
+
+std::string LiveScene::name_at(const Ray& ray) const {
+  const std::optional<Target> target = find(ray);
+  return target ? target->name : std::string();
 }
 
 std::string LiveScene::held() const {
@@ -331,6 +356,17 @@ Outcome LiveScene::perform(const Remove& remove) {
   const Result<void> removed = simulation_.remove(target->name);
   if (!removed) return {false, to_line(removed.error())};
   return {true, "removed '" + target->name + "'"};
+}
+
+Outcome LiveScene::perform(const Edit& edit) {
+  World& world = simulation_.world();
+  const WorldDesc& wanted = edit.document->scene.world;
+  for (const Result<void>& done :
+       {world.set_gravity(wanted.gravity), world.set_wind(wanted.wind), world.set_workers(wanted.workers)}) {
+    if (!done) return {false, to_line(done.error())};
+  }
+  document_ = edit.document;
+  return {true, edit.what};
 }
 
 }  // namespace hooke::app

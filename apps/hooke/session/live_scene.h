@@ -19,8 +19,9 @@ namespace hooke::app {
 /// new action forgets what came after it.
 class LiveScene {
  public:
-  /// `budget` is the memory for the timeline [bytes].
-  LiveScene(Simulation simulation, std::size_t budget);
+  /// `budget` is the memory for the timeline [bytes]. `document` is what the simulation was made from; edits
+  /// need it.
+  LiveScene(Simulation simulation, std::size_t budget, SharedDocument document = nullptr);
 
   /// Does an action now. What failed changes nothing.
   Outcome act(const Action& action);
@@ -31,7 +32,10 @@ class LiveScene {
   /// Goes back to before the last action that was not undone: a whole grip from grab to release counts as
   /// one.
   Outcome undo();
-  /// Goes back to the start, and forgets everything.
+  /// Goes on to where the last undo was called, and does again what it took back. A new action forgets what
+  /// was undone.
+  Outcome redo();
+  /// Goes back to the start, and forgets everything but edits of the scene.
   void restart();
 
   [[nodiscard]] const Simulation& simulation() const { return simulation_; }
@@ -42,6 +46,12 @@ class LiveScene {
   [[nodiscard]] std::uint64_t last_step() const { return last_step_; }
   /// Number of actions that undo can take back.
   [[nodiscard]] std::size_t undo_count() const { return timeline_.undo_count(next_action_); }
+  /// Number of actions that redo can do again.
+  [[nodiscard]] std::size_t redo_count() const { return undone_.size(); }
+  /// The scene as it is edited now; null without one.
+  [[nodiscard]] const SharedDocument& document() const { return document_; }
+  /// Name of the object that a ray meets first; empty for none.
+  [[nodiscard]] std::string name_at(const Ray& ray) const;
   /// Name of the object that the hand holds; empty for none.
   [[nodiscard]] std::string held() const;
   /// Report of the last step.
@@ -56,6 +66,14 @@ class LiveScene {
     std::string name = {};
   };
 
+  /// What undo took back.
+  struct Undone {
+    Moment before;                      ///< The moment that undo went to.
+    Moment after;                       ///< The state in which undo was called.
+    std::vector<LoggedAction> actions;  ///< Those that were done after `before`.
+    std::uint64_t last_step = 0;
+  };
+
   [[nodiscard]] Moment moment(std::string_view before) const;
   void go_to(const Moment& moment);
   void repeat_actions();
@@ -68,6 +86,7 @@ class LiveScene {
   Outcome perform(const Pin& pin);
   Outcome perform(const Tie& tie);
   Outcome perform(const Remove& remove);
+  Outcome perform(const Edit& edit);
   Outcome pin_body(const Target& target);
   Outcome add(const SceneObjects& objects, const std::string& text);
   [[nodiscard]] std::optional<Target> find(const Ray& ray) const;
@@ -77,6 +96,8 @@ class LiveScene {
   Simulation simulation_;
   Hand hand_;
   Timeline timeline_;
+  SharedDocument document_;
+  std::vector<Undone> undone_;   ///< The last one first to be done again comes last.
   std::size_t next_action_ = 0;  ///< Number of actions of the log that were done.
   std::uint64_t last_step_ = 0;
   std::uint64_t added_ = 0;

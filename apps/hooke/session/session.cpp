@@ -2,8 +2,12 @@
 
 #include "hooke/session/added_objects.h"
 
+#include "process/new_file.h"
+
 #include <algorithm>
 #include <exception>
+#include <filesystem>
+#include <numeric>
 #include <utility>
 
 namespace hooke::app {
@@ -12,6 +16,11 @@ namespace {
 
 /// Steps that are behind by more than this many are not made up for: the scene then runs slower than time.
 constexpr int kCatchUpSteps = 4;
+
+/// Worlds that undo can put back whole, with all of their timelines.
+constexpr std::size_t kKeptWorlds = 8;
+/// How often the scene's file is looked at.
+constexpr std::chrono::milliseconds kLookInterval(250);
 
 void smooth(double& value, double input) {
   value = value > 0 ? 0.92 * value + 0.08 * input : input;
@@ -56,10 +65,20 @@ std::vector<std::pair<std::string, DVec3>> places_of(const Simulation& simulatio
   return places;
 }
 
+std::vector<ListedObject> list_of(const Simulation& simulation) {
+  std::vector<ListedObject> listed;
+  for (const SceneObject& object : simulation.objects())
+    listed.push_back({object.name, object.kind, object.path});
+  return listed;
+}
+
 }  // namespace
 
-Session::Session(Loader loader, const SessionOptions& options)
-    : loader_(std::move(loader)), options_(options), view_(std::make_shared<const SessionView>()) {
+Session::Session(std::string file, Loader loader, const SessionOptions& options)
+    : file_(std::move(file)),
+      loader_(std::move(loader)),
+      options_(options),
+      view_(std::make_shared<const SessionView>()) {
   state_.playing = options.playing;
   state_.timeline_budget = options.timeline_budget;
   thread_ = std::thread([this] { run(); });
@@ -103,24 +122,64 @@ void Session::run() {
   }
 }
 
-bool Session::load() {
-  Loaded<Simulation> loaded = loader_([&](const std::string& text) {
+Session::LivePtr Session::build(SharedDocument document) {
+  Loaded<Simulation> built = loader_.build(document->scene, [&](const std::string& text) {
     state_.progress = text;
     publish(state_);
   });
-  if (!loaded) {
+  state_.progress.clear();
+  state_.errors = std::move(built.errors);
+  if (!built) return nullptr;
+  return std::make_unique<LiveScene>(std::move(*built.value), options_.timeline_budget, std::move(document));
+}
+
+bool Session::load() {
+  watch_.watch(file_);
+  Loaded<SceneDocument> document = loader_.read(file_);
+  LivePtr live;
+  if (document) {
+    saved_ = std::make_shared<const SceneDocument>(std::move(*document.value));
+    live = build(saved_);
+  } else {
+    state_.errors = std::move(document.errors);
+  }
+  if (!live) {
     state_.stage = SessionView::Stage::kFailed;
-    state_.errors = std::move(loaded.errors);
     publish(state_);
     return false;
   }
-  live_ = std::make_unique<LiveScene>(std::move(*loaded.value), options_.timeline_budget);
   state_.stage = SessionView::Stage::kReady;
-  state_.step_seconds = static_cast<double>(live_->simulation().scene().dt);
-  state_.droppable = names_to_drop(live_->simulation().scene());
-  due_ = WallClock::now();
+  state_.opened = 1;
+  take(std::move(live));
   publish();
   return true;
+}
+
+/// Shows another world from now on. All that was made for the one before goes.
+void Session::take(LivePtr live) {
+  live_ = std::move(live);
+  capture_ = {};
+  ++state_.built;
+  state_.step_seconds = static_cast<double>(live_->simulation().scene().dt);
+  state_.droppable = names_to_drop(live_->simulation().scene());
+  state_.step_ms = 0;
+  state_.problem.clear();
+  state_.warnings.clear();
+  state_.listed = nullptr;
+  due_ = WallClock::now();
+}
+
+/// Shows another world, and keeps the one before for undo.
+void Session::replace(LivePtr live) {
+  past_.push_back(std::move(live_));
+  const auto bytes = [&] {
+    return std::accumulate(past_.begin(), past_.end(), std::size_t{0},
+                           [](std::size_t sum, const LivePtr& one) { return sum + one->timeline().bytes(); });
+  };
+  while (past_.size() > 1 && (past_.size() > kKeptWorlds || bytes() > options_.timeline_budget))
+    past_.erase(past_.begin());
+  future_.clear();
+  take(std::move(live));
 }
 
 void Session::play() {
@@ -130,67 +189,178 @@ void Session::play() {
       const std::lock_guard lock(mutex_);
       if (ends_) return;
     }
+    if (!commands.empty()) state_.listed = nullptr;
     for (std::size_t i = 0; i < commands.size(); ++i) {
       ++state_.commands;
       if (i + 1 < commands.size() && replaces(commands[i + 1], commands[i])) continue;
       obey(commands[i]);
     }
-    step_if_due();
-    publish();
+    const bool was_read = look_at_file();
+    const bool moved = step_if_due();
+    if (!commands.empty() || was_read || moved) publish();
   }
 }
 
 std::vector<Command> Session::wait() {
   std::unique_lock lock(mutex_);
   const auto has_work = [&] { return ends_ || !queue_.empty(); };
-  if (state_.playing) {
-    changed_.wait_until(lock, due_, has_work);
-  } else {
-    changed_.wait(lock, has_work);
-  }
+  changed_.wait_until(lock, state_.playing ? std::min(due_, next_look_) : next_look_, has_work);
   std::vector<Command> commands(std::make_move_iterator(queue_.begin()),
                                 std::make_move_iterator(queue_.end()));
   queue_.clear();
   return commands;
 }
 
+bool Session::look_at_file() {
+  if (WallClock::now() < next_look_) return false;
+  next_look_ = WallClock::now() + kLookInterval;
+  if (!watch_.was_saved()) return false;
+  obey(Reload{});
+  return true;
+}
+
+void Session::say(Outcome outcome) {
+  state_.said = std::move(outcome);
+  state_.said_by = state_.commands;
+}
+
+void Session::obey(const Command& command) {
+  std::visit([this](const auto& one) { obey(one); }, command);
+}
+
 void Session::obey(const Action& action) {
-  const Outcome outcome = live_->act(action);
+  if (const auto* grab = std::get_if<Grab>(&action)) {
+    if (const std::string name = live_->name_at(grab->ray); !name.empty()) state_.selected = name;
+  }
+  Outcome outcome = live_->act(action);
+  if (outcome.done) future_.clear();
   if (std::holds_alternative<Grab>(action)) {
     state_.last_grab = state_.commands;
     state_.last_grab_done = outcome.done;
     // Who turns the camera need not read each time that nothing is there.
     if (!outcome.done) return;
   }
-  if (!outcome.done || !outcome.text.empty()) {
-    state_.said = outcome;
-    state_.said_by = state_.commands;
-  }
+  if (!outcome.done || !outcome.text.empty()) say(std::move(outcome));
 }
 
-void Session::obey(const Command& command) {
-  if (const auto* action = std::get_if<Action>(&command)) return obey(*action);
-  if (const auto* play = std::get_if<Play>(&command)) {
-    state_.playing = play->playing;
-    due_ = WallClock::now();
-  } else if (const auto* steps = std::get_if<MakeSteps>(&command)) {
-    state_.playing = false;
-    for (int i = 0; i < steps->count; ++i) step();
-  } else if (const auto* speed = std::get_if<SetSpeed>(&command)) {
-    state_.speed = std::clamp(speed->speed, 1e-3, 16.0);
-    due_ = WallClock::now();
-  } else if (const auto* seek = std::get_if<Seek>(&command)) {
-    state_.playing = false;
-    live_->seek(seek->step);
-    state_.problem.clear();
-  } else if (holds<Undo>(command)) {
-    state_.said = live_->undo();
-    state_.said_by = state_.commands;
-    state_.problem.clear();
+void Session::obey(const Play& play) {
+  state_.playing = play.playing;
+  due_ = WallClock::now();
+}
+
+void Session::obey(const MakeSteps& steps) {
+  state_.playing = false;
+  for (int i = 0; i < steps.count; ++i) step();
+}
+
+void Session::obey(const SetSpeed& speed) {
+  state_.speed = std::clamp(speed.speed, 1e-3, 16.0);
+  due_ = WallClock::now();
+}
+
+void Session::obey(const Seek& seek) {
+  state_.playing = false;
+  live_->seek(seek.step);
+  state_.problem.clear();
+}
+
+void Session::obey(const Undo& /*undo*/) {
+  state_.problem.clear();
+  if (live_->undo_count() > 0 || past_.empty()) return say(live_->undo());
+  future_.push_back(std::move(live_));
+  take(std::move(past_.back()));
+  past_.pop_back();
+  say({true, "undone: change of the scene"});
+}
+
+void Session::obey(const Redo& /*redo*/) {
+  state_.problem.clear();
+  if (live_->redo_count() > 0 || future_.empty()) return say(live_->redo());
+  past_.push_back(std::move(live_));
+  take(std::move(future_.back()));
+  future_.pop_back();
+  say({true, "done again: change of the scene"});
+}
+
+void Session::obey(const Restart& /*restart*/) {
+  live_->restart();
+  state_.problem.clear();
+}
+
+void Session::obey(const Open& open) {
+  Loaded<SceneDocument> document = loader_.read(open.file);
+  LivePtr live;
+  if (document) {
+    auto shared = std::make_shared<const SceneDocument>(std::move(*document.value));
+    live = build(shared);
+    if (live) saved_ = std::move(shared);
   } else {
-    live_->restart();
-    state_.problem.clear();
+    state_.errors = std::move(document.errors);
   }
+  state_.file_errors = std::exchange(state_.errors, {});
+  if (!live) return say({false, "'" + open.file + "' cannot be opened"});
+  file_ = open.file;
+  watch_.watch(file_);
+  past_.clear();
+  future_.clear();
+  state_.selected.clear();
+  ++state_.opened;
+  take(std::move(live));
+  say({true, "opened '" + file_ + "'"});
+}
+
+void Session::obey(const Reload& /*reload*/) {
+  watch_.watch(file_);
+  Loaded<SceneDocument> document = loader_.read(file_);
+  state_.file_errors = std::move(document.errors);
+  if (!document) return say({false, "the file has a mistake; the scene stays as it was"});
+  auto shared = std::make_shared<const SceneDocument>(std::move(*document.value));
+  if (shared->text == live_->document()->text) {
+    saved_ = live_->document();
+    return say({true, "the file says what is shown"});
+  }
+  LivePtr live = build(shared);
+  state_.file_errors = std::exchange(state_.errors, {});
+  if (!live) return say({false, "the file has a mistake; the scene stays as it was"});
+  saved_ = std::move(shared);
+  replace(std::move(live));
+  say({true, "read the file again"});
+}
+
+void Session::obey(const Change& change) {
+  const SharedDocument& before = live_->document();
+  Loaded<SceneDocument> edited = edit_document(*before, change.path, change.value);
+  if (!edited) return say({false, to_line(edited.errors.front())});
+  auto shared = std::make_shared<const SceneDocument>(std::move(*edited.value));
+  if (shared->text == before->text) return;
+  const std::string what = change.path + " is " + change.value + " now";
+  if (can_change_live(before->scene, shared->scene)) return obey(Action(Edit{std::move(shared), what}));
+  LivePtr live = build(std::move(shared));
+  const std::vector<Error> errors = std::exchange(state_.errors, {});
+  if (!live) return say({false, to_line(errors.front())});
+  replace(std::move(live));
+  say({true, what + "; the scene starts anew with it"});
+}
+
+void Session::obey(const Save& save) {
+  const std::filesystem::path name = save.name;
+  if (name.empty() || name.has_parent_path())
+    return say(
+        {false,
+         "a scene is saved in its own folder, from which its models and textures count: give a name only"});
+  const std::string path =
+      (std::filesystem::path(live_->document()->scene.path).parent_path() / name).string();
+  if (std::filesystem::path(path).extension() != ".json")
+    return say({false, "a scene's name ends with .json"});
+  const Result<void> written = process::write_file(path, live_->document()->text);
+  if (!written) return say({false, to_line(written.error())});
+  if (path == file_) watch_.watch(file_);
+  saved_ = live_->document();
+  say({true, "saved '" + path + "'"});
+}
+
+void Session::obey(const Select& select) {
+  state_.selected = select.name;
 }
 
 void Session::step() {
@@ -202,14 +372,18 @@ void Session::step() {
   state_.problem = to_line(done.error());
 }
 
-void Session::step_if_due() {
+bool Session::step_if_due() {
   const bool is_over = options_.stop_time && live_->simulation().world().time() >= *options_.stop_time;
-  if (is_over) state_.playing = false;
-  if (!state_.playing || WallClock::now() < due_) return;
+  if (!state_.playing || (!is_over && WallClock::now() < due_)) return false;
+  if (is_over) {
+    state_.playing = false;
+    return true;
+  }
   step();
   const auto period = std::chrono::duration_cast<WallClock::duration>(
       std::chrono::duration<double>(state_.step_seconds / state_.speed));
   due_ = std::max(due_ + period, WallClock::now() - kCatchUpSteps * period);
+  return true;
 }
 
 void Session::publish() {
@@ -225,7 +399,13 @@ void Session::publish() {
   state_.held = live_->held();
   state_.hand_place = live_->hand().place(world);
   state_.hand_target = live_->hand().target();
-  state_.undo_count = live_->undo_count();
+  state_.undo_count = live_->undo_count() + past_.size();
+  state_.redo_count = live_->redo_count() + future_.size();
+  state_.document = live_->document();
+  state_.edited = saved_ != live_->document();
+  if (!state_.listed || state_.listed->size() != simulation.objects().size())
+    state_.listed = std::make_shared<const std::vector<ListedObject>>(list_of(simulation));
+  state_.measured = measure(simulation, state_.selected);
   state_.moments = timeline.moments();
   state_.timeline_bytes = timeline.bytes();
   state_.timeline_interval = timeline.interval();

@@ -4,6 +4,8 @@
 #include "hooke/scene_io.h"
 #include "hooke/session/action.h"
 #include "hooke/session/live_scene.h"
+#include "hooke/session/measured_value.h"
+#include "hooke/session/scene_document.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -37,18 +39,49 @@ struct SetSpeed {
 struct Seek {
   std::uint64_t step = 0;
 };
-/// Goes back to before the last action.
+/// Goes back to before the last action or edit.
 struct Undo {};
-/// Goes back to the start, and forgets what was done.
+/// Does again what was undone last.
+struct Redo {};
+/// Goes back to the start, and forgets what was done; edits of the scene stay.
 struct Restart {};
+/// Opens another scene or model.
+struct Open {
+  std::string file = {};
+};
+/// Reads the file again.
+struct Reload {};
+/// Changes what the scene says. Gravity and wind change at once; all else starts the scene again.
+struct Change {
+  std::string path = {};   ///< As "ropes[0].total_mass".
+  std::string value = {};  ///< As JSON.
+};
+/// Saves the scene as it is edited now.
+struct Save {
+  std::string name =
+      {};  ///< Name of a file in the folder of the scene, which models and textures count from.
+};
+/// Selects an object, whose figures the view then shows; an empty name for none.
+struct Select {
+  std::string name = {};
+};
 
-using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Restart, Action>;
+using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Redo, Restart, Open, Reload, Change, Save,
+                             Select, Action>;
 
 /// [J]
 struct Energies {
   double kinetic = 0;
   double potential = 0;  ///< Potential energy of gravity.
   double elastic = 0;
+};
+
+/// An object of the scene, for lists.
+struct ListedObject {
+  std::string name = {};
+  SceneObject::Kind kind = SceneObject::Kind::kBody;
+  std::string path =
+      {};  ///< Where the scene describes it, as "ropes[0]"; "added[0].ropes[0]" for one that came later.
 };
 
 /// What others see of a session at one moment. It does not change any more.
@@ -61,8 +94,17 @@ struct SessionView {
   };
 
   Stage stage = Stage::kLoading;
-  std::string progress = {};         ///< What is done while it loads.
-  std::vector<Error> errors = {};    ///< Why it failed.
+  std::string progress = {};            ///< What is done while it loads.
+  std::vector<Error> errors = {};       ///< Why it failed.
+  std::vector<Error> file_errors = {};  ///< What is wrong with the file that was to be read last.
+  SharedDocument document = {};         ///< The scene as it is edited now.
+  bool edited = false;                  ///< Whether it was changed since it was read or saved.
+  std::uint64_t opened = 0;  ///< Number of scenes that were opened: whoever looks at another one looks anew.
+  std::uint64_t built =
+      0;  ///< Number of worlds that were made or put back: all that is drawn is another then.
+  std::shared_ptr<const std::vector<ListedObject>> listed = {};  ///< All objects.
+  std::string selected = {};                                     ///< Name of the object that is selected.
+  std::vector<MeasuredValue> measured = {};                      ///< Its figures, or those of the world.
   std::uint64_t commands = 0;        ///< Number of commands that were done: see Session::post.
   std::optional<Outcome> said = {};  ///< What came of the last action or undo.
   std::uint64_t said_by = 0;         ///< Number of the command that `said` is about.
@@ -80,7 +122,8 @@ struct SessionView {
   std::string held = {};       ///< Name of what it holds.
   DVec3 hand_place = {};       ///< The place that is held [m].
   DVec3 hand_target = {};      ///< Where the hand wants it [m].
-  std::size_t undo_count = 0;  ///< Number of actions that undo can take back.
+  std::size_t undo_count = 0;  ///< Number of actions and edits that undo can take back.
+  std::size_t redo_count = 0;  ///< Number of those that redo can do again.
   std::size_t moments = 0;     ///< States that the timeline holds.
   std::size_t timeline_bytes = 0;
   std::size_t timeline_budget = 0;                 ///< [bytes]
@@ -102,14 +145,12 @@ struct SessionOptions {
   std::optional<double> stop_time = {};                  ///< Pauses for good at this time [s].
 };
 
-/// Makes the simulation, on the session's thread, and calls `progress` with what is done.
-using Loader = std::function<Loaded<Simulation>(const std::function<void(const std::string&)>& progress)>;
-
 /// Runs a simulation on a thread of its own, which loads it, steps it in real time and does what it is told.
 /// All calls return at once, whatever the thread is busy with.
 class Session {
  public:
-  Session(Loader loader, const SessionOptions& options);
+  /// `file` is the scene or model to open; it is read again whenever it is saved.
+  Session(std::string file, Loader loader, const SessionOptions& options);
   /// Waits for the step that runs.
   ~Session();
   Session(const Session&) = delete;
@@ -126,21 +167,48 @@ class Session {
  private:
   using WallClock = std::chrono::steady_clock;
 
+  using LivePtr = std::unique_ptr<LiveScene>;
+
   void run();
   bool load();
+  LivePtr build(SharedDocument document);
+  void take(LivePtr live);
+  /// Reads the file again if it was saved, and returns whether it was.
+  bool look_at_file();
   void play();
   /// Waits for commands, or for the time of the next step. Returns the commands.
   std::vector<Command> wait();
   void obey(const Command& command);
   void obey(const Action& action);
+  void obey(const Play& play);
+  void obey(const MakeSteps& steps);
+  void obey(const SetSpeed& speed);
+  void obey(const Seek& seek);
+  void obey(const Undo& undo);
+  void obey(const Redo& redo);
+  void obey(const Restart& restart);
+  void obey(const Open& open);
+  void obey(const Reload& reload);
+  void obey(const Change& change);
+  void obey(const Save& save);
+  void obey(const Select& select);
+  void say(Outcome outcome);
+  void replace(LivePtr live);
   void step();
-  void step_if_due();
+  /// Returns whether it made a step, or stopped for good.
+  bool step_if_due();
   void publish();
   void publish(SessionView view);
 
+  std::string file_;
   Loader loader_;
   SessionOptions options_;
-  std::unique_ptr<LiveScene> live_;
+  LivePtr live_;
+  std::vector<LivePtr> past_;    ///< What edits and reloads replaced, the last one last.
+  std::vector<LivePtr> future_;  ///< What undo replaced, likewise.
+  FileWatch watch_;
+  SharedDocument saved_;             ///< What the file says.
+  WallClock::time_point next_look_;  ///< When to look at the file again.
   SceneCapture capture_;
   SessionView state_;          ///< The next view, but for what follows from the scene.
   WallClock::time_point due_;  ///< When the next step is due.

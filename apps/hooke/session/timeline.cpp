@@ -85,6 +85,10 @@ void Timeline::cut(std::uint64_t step, std::size_t actions) {
   count_bytes();
 }
 
+std::vector<LoggedAction> Timeline::actions_from(std::size_t actions) const {
+  return {log_.begin() + static_cast<std::ptrdiff_t>(std::min(actions, log_.size())), log_.end()};
+}
+
 void Timeline::forget_undo(std::size_t actions) {
   for (Moment& moment : moments_) {
     if (moment.actions >= actions) moment.before.clear();

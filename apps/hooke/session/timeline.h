@@ -16,9 +16,10 @@ struct Moment {
   SimulationSnapshot snapshot;
   Hand hand;
   std::uint64_t step = 0;
-  std::size_t actions = 0;  ///< Number of actions of the log that were done by then.
-  std::uint64_t added = 0;  ///< Number of objects that were added by then, for their names.
-  std::string before = {};  ///< The action that undo takes back from here; empty for none.
+  std::size_t actions = 0;       ///< Number of actions of the log that were done by then.
+  std::uint64_t added = 0;       ///< Number of objects that were added by then, for their names.
+  SharedDocument document = {};  ///< The scene as it was edited by then.
+  std::string before = {};       ///< The action that undo takes back from here; empty for none.
 };
 
 /// An action and the step before which it was done.
@@ -44,12 +45,16 @@ class Timeline {
   /// Notes that an action was done.
   void log(std::uint64_t step, Action action) { log_.push_back({step, std::move(action)}); }
 
+  /// The first moment: the start. There is one from the first call of add() on.
+  [[nodiscard]] const Moment& first() const { return moments_.front(); }
   /// The last moment at or before a step; null if there is none.
   [[nodiscard]] const Moment* find(std::uint64_t step) const;
   /// The last moment before whose action undo goes back, at or before a place of the log; null for none.
   [[nodiscard]] const Moment* find_undo(std::size_t actions) const;
   /// Forgets actions from number `actions` on, and moments after them or after `step`.
   void cut(std::uint64_t step, std::size_t actions);
+  /// The actions from number `actions` on.
+  [[nodiscard]] std::vector<LoggedAction> actions_from(std::size_t actions) const;
   /// Says that undo has used the moment before action number `actions`.
   void forget_undo(std::size_t actions);
 
