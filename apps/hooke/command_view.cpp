@@ -1,11 +1,11 @@
 #include "hooke/command_line.h"
 #include "hooke/drawing/drawing_style.h"
 #include "hooke/session/session.h"
+#include "hooke/view/scene_list.h"
 #include "hooke/view/view_window.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -21,6 +21,7 @@ struct CommandOptions {
   std::optional<double> seconds;
   std::string screenshot;
   std::string log;
+  std::optional<double> interface_scale;
   std::optional<double> memory;  ///< [MiB]
   StyleWords style;
   SceneOverrides overrides;
@@ -34,6 +35,8 @@ void describe(CLI::App& app, CommandOptions& options) {
   app.add_option("--screenshot", options.screenshot, "Write the last picture to this .png")
       ->needs("--seconds");
   app.add_option("--log", options.log, "Write what is shown to this file, a line of JSON for each picture");
+  add_number(app, "--ui-scale", options.interface_scale, 0.5, 8,
+             "Size of the panels; what fits the window by default");
   add_number(app, "--memory", options.memory, 1, 1e6, "Memory for the timeline [MiB]; 512 by default");
   add_style(app, options.style);
   add_overrides(app, options.overrides);
@@ -47,14 +50,6 @@ void describe(CLI::App& app, CommandOptions& options) {
       "  hooke view scenes/showcase.json\n"
       "  hooke view scenes/paper/fig7.json --bounds sphere,oriented_box\n"
       "  hooke view scenes/models/lantern.3ds --fit 0.4");
-}
-
-bool is_model(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto known = {".3ds", ".obj", ".stl", ".ply", ".gltf", ".glb"};
-  return std::any_of(known.begin(), known.end(), [&](const char* e) { return ending == e; });
 }
 
 /// Makes a scene with the model standing on a ground.
@@ -85,7 +80,7 @@ Result<Scene> scene_of_model(const std::string& file, std::optional<double> fit)
 
 /// Reads a scene file, or makes the scene of a model.
 Loaded<SceneDocument> read(const CommandOptions& options, const std::string& file) {
-  if (!is_model(file)) return read_document(file);
+  if (!is_model_file(file)) return read_document(file);
   auto scene = scene_of_model(file, options.fit);
   if (!scene) return {.errors = {scene.error()}};
   std::string text = write_scene(scene.value());
@@ -123,7 +118,7 @@ int command_view(Arguments arguments) {
   auto style = style_of(options.style);
   if (!style) return report(style.error());
   std::optional<Scene> scene;
-  if (!is_model(options.path)) {
+  if (!is_model_file(options.path)) {
     scene = read_scene(options.path);
     if (!scene) return kBadInput;
   }
@@ -131,6 +126,7 @@ int command_view(Arguments arguments) {
   const std::string name = std::filesystem::path(options.path).filename().string();
   view.title = "Hooke: " + (scene && !scene->title.empty() ? scene->title : name);
   view.style = std::move(style).value();
+  view.interface_scale = options.interface_scale;
   view.stop_time = options.seconds;
   view.screenshot = options.screenshot;
   view.log = options.log;

@@ -14,6 +14,7 @@ import time
 import unittest
 
 PROGRAM = None
+SWITCHES = int(os.environ.get("HOOKE_SWITCHES", 20))  # Of scenes, to see whether memory stays behind.
 LIMIT = 120  # Seconds after which a state is taken not to come.
 SCENE = """{
   "version": 1, "seconds": 600,
@@ -98,6 +99,38 @@ class Window:
     def key(self, name):
         self.do("key", name)
         return self.fresh()
+
+    def middle(self, name):
+        """The middle of a part of the panels, which are rolled until it is shown."""
+        for _ in range(40):
+            state = self.fresh()
+            if name in state["boxes"]:
+                left, top, right, bottom = state["boxes"][name]
+                return (left + right) / 2, (top + bottom) / 2
+            self.point((1080, 600))
+            self.do("click", 5)
+        raise AssertionError(f"'{name}' is not shown; the last state was {self.last}")
+
+    def click(self, name):
+        self.point(self.middle(name))
+        self.do("mousedown", 1)
+        self.fresh()
+        self.do("mouseup", 1)
+        return self.fresh()
+
+    def enter(self, name, text):
+        """Types a text into a field of the panels, in place of what it holds."""
+        self.click(name)
+        self.key("ctrl+a")
+        self.do("type", "--delay", 60, "--", text)
+        self.fresh()
+        return self.key("Return")
+
+    def save_file(self, text):
+        """Saves the scene's file at once, as editors do."""
+        file = self.log.parent / "scene.json"
+        file.with_suffix(".new").write_text(text)
+        file.with_suffix(".new").replace(file)
 
     def drag(self, start, way, steps=6):
         """Presses the left button, waits for the hand, moves by a way, and returns the state before release."""
@@ -203,7 +236,7 @@ class View(unittest.TestCase):
         hit = window.wait("the ball was hit", lambda s: s["objects"]["ball"]["place"][2] < -0.3)
         paused = window.key("space")
         # A drag of the timeline to its start, and back to its end.
-        left, top, right, bottom = paused["timeline"]
+        left, top, right, bottom = paused["boxes"]["timeline"]
         middle = (top + bottom) / 2
         window.point((right - 8, middle))
         window.do("mousedown", 1)
@@ -240,6 +273,112 @@ class View(unittest.TestCase):
         window.do("click", 4)
         near = window.wait("the wheel zooms", lambda s: s["objects"] != far)
         self.assertNotEqual(near["objects"]["ball"]["pixel"], far["ball"]["pixel"])
+        self.end()
+
+    def test_a_value_is_edited_undone_done_again_and_saved(self):
+        window = self.open("--paused")
+        for _ in range(4):
+            window.key("s")
+        window.click("object rope")
+        state = window.wait("it is selected", lambda s: s["selected"] == "rope")
+        self.assertAlmostEqual(state["measured"]["mass"], 1, places=5)
+        state = window.enter("key ropes[0].total_mass", "2.5")
+        self.assertEqual(state["said"], "ropes[0].total_mass is 2.5 now; the scene starts anew with it")
+        self.assertAlmostEqual(state["measured"]["mass"], 2.5, places=5)
+        self.assertEqual((state["step"], state["built"], state["edited"]), (0, 2, True))
+        state = window.enter("key ropes[0].total_mass", "-2")
+        self.assertIn("must be", state["said"])
+        self.assertAlmostEqual(state["measured"]["mass"], 2.5, places=5)
+        state = window.key("u")
+        self.assertAlmostEqual(state["measured"]["mass"], 1, places=5)
+        self.assertEqual((state["step"], state["edited"]), (4, False))
+        window.key("ctrl+y")
+        # Gravity changes at once.
+        window.click("object ")
+        window.wait("the world is selected", lambda s: not s["selected"])
+        window.key("s")
+        state = window.enter("key world.gravity", "0, -1.62, 0")
+        self.assertEqual(state["said"], "world.gravity is [0, -1.62, 0] now")
+        self.assertEqual((state["step"], state["built"]), (1, 4))
+        window.enter("save name", "moon.json")
+        self.assertTrue(window.click("save")["said"].startswith("saved '"), window.last["said"])
+        saved = (window.log.parent / "moon.json").read_text()
+        expected = SCENE.replace('"radius": 0.03}', '"radius": 0.03,\n             "total_mass": 2.5}')
+        expected = expected.replace("\n}", ',\n  "world": {"gravity": [0, -1.62, 0]}\n}')
+        self.assertEqual(saved, expected)
+        self.end()
+
+    def test_a_saved_file_is_read_again_and_a_mistake_is_told(self):
+        window = self.open("--paused")
+        window.point((640, 60))
+        window.do("mousedown", 3)
+        window.do("mousemove_relative", "--", 60, 0)
+        window.fresh()
+        window.do("mouseup", 3)
+        before = window.fresh()
+        window.save_file(SCENE.replace('"position": [-0.7, 0.3, 0], "mass"', '"position": [-0.7, 1.3, 0], "mass"'))
+        state = window.wait("it is read again", lambda s: s["built"] == 2)
+        self.assertAlmostEqual(state["objects"]["ball"]["place"][1], 1.3, places=5)
+        # The camera stays where it was turned to.
+        self.assertEqual(window.fresh()["objects"]["jelly"]["pixel"], before["objects"]["jelly"]["pixel"])
+        window.save_file(SCENE.replace('"seconds": 600,', '"seconds": 600'))
+        state = window.wait("the mistake is told", lambda s: s["mistakes"])
+        self.assertRegex(state["mistakes"][0], r"scene\.json:[23]:\d+: ")
+        self.assertAlmostEqual(window.key("s")["objects"]["ball"]["place"][1], 1.3, places=2)
+        window.save_file(SCENE)
+        state = window.wait("it is read again", lambda s: s["built"] == 3)
+        self.assertEqual(state["mistakes"], [])
+        self.assertEqual(window.key("F5")["said"], "the file says what is shown")
+        self.end()
+
+    def test_another_scene_opens_in_the_window(self):
+        (pathlib.Path(self.folder.name) / "other.json").write_text(
+            '{"version": 1, "title": "Other", "bodies": [{"name": "ball", "shape": {"sphere": {"radius": 1}}}]}')
+        window = self.open("--paused")
+        window.click("tab Scenes")
+        state = window.click("scene other.json")
+        state = window.wait("it is open", lambda s: s["opened"] == 2)
+        self.assertTrue(state["file"].endswith("other.json"))
+        self.assertEqual(set(window.fresh()["objects"]), {"ball"})
+        # The ball of 2 m fills a good part of the picture in any case: its middle is in sight.
+        x, y = window.last["objects"]["ball"]["pixel"]
+        self.assertTrue(0 < x < 1280 and 0 < y < 720)
+        window.click("scene scene.json")
+        window.wait("the first is open again", lambda s: s["opened"] == 3 and "jelly" in s["objects"])
+        self.end()
+
+    def test_switches_between_scenes_leave_no_memory_behind(self):
+        (pathlib.Path(self.folder.name) / "other.json").write_text(SCENE.replace("scene", "other"))
+        window = self.open("--paused")
+        window.click("tab Scenes")
+
+        def switch(count):
+            for _ in range(count):
+                opened = window.last["opened"]
+                name = "scene.json" if window.last["file"].endswith("other.json") else "other.json"
+                window.point(window.middle(f"scene {name}"))
+                window.do("mousedown", 1)
+                window.fresh()
+                window.do("mouseup", 1)
+                window.wait("another scene", lambda s: s["opened"] == opened + 1)
+            return int(pathlib.Path(f"/proc/{window.program.pid}/statm").read_text().split()[1]) * 4096
+
+        before = switch(10)
+        growth = switch(SWITCHES) - before
+        # One of these worlds with its figures takes 2 MB.
+        self.assertLess(growth, 8e6)
+        print(f"{SWITCHES} switches: {growth / 1e6:.1f} MB more")
+        self.end()
+
+    def test_panels_grow_and_shrink(self):
+        window = self.open("--paused", "--ui-scale", "1.5")
+        font = window.fresh()["font"]
+        self.assertAlmostEqual(font, 20, delta=1)
+        for name, factor in (("ctrl+equal", 1.25), ("ctrl+minus", 1), ("ctrl+minus", 0.8)):
+            window.do("key", name)
+            window.wait(f"letters of {factor} times the size", lambda s: abs(s["font"] - factor * font) <= 1)
+        window.do("key", "i")
+        window.wait("the inspector is hidden", lambda s: "save" not in s["boxes"])
         self.end()
 
     def test_pins_strings_drops_and_removal(self):

@@ -1,3 +1,4 @@
+#include "hooke/session/scene_keys.h"
 #include "hooke/session/session.h"
 
 #include "../temporary_folder.h"
@@ -151,6 +152,36 @@ TEST_SUITE("session/edit") {
     CHECK(figure(*view, "mass") == doctest::Approx(7));
     CHECK(view->undo_count == 1);
     CHECK(view->redo_count == 0);
+  }
+
+  TEST_CASE("keys come with units, values of the file, and defaults") {
+    const Desk desk;
+    const auto view =
+        desk.session->wait_for([](const SessionView& v) { return v.document != nullptr; }, kLong);
+    const auto find = [&](const std::string& of, const std::string& key) -> SceneKey {
+      for (const SceneKey& one : keys_of(*view->document, of)) {
+        if (one.key == key) return one;
+      }
+      FAIL("no key is called " << key);
+      return {};
+    };
+    const SceneKey mass = find("ropes[0]", "total_mass");
+    CHECK(mass.path == "ropes[0].total_mass");
+    CHECK(mass.value == "2");
+    CHECK(mass.said);
+    CHECK(mass.unit == "kg");
+    const SceneKey stiffness = find("ropes[0]", "stiffness");
+    CHECK(stiffness.type == SceneKey::Type::kNumber);
+    CHECK(stiffness.value == "\"rigid\"");
+    CHECK_FALSE(stiffness.said);
+    CHECK(stiffness.unit == "N/m");
+    CHECK(find("bodies[0]", "kind").words.size() == 3);
+    CHECK(find("bodies[0]", "position").value == "[0,50,0]");
+    const SceneKey wind = find("world", "wind");
+    CHECK(wind.type == SceneKey::Type::kGroup);
+    CHECK(wind.keys.front().path == "world.wind.velocity");
+    CHECK(wind.keys.front().unit == "m/s");
+    CHECK(keys_of(*view->document, "added[0].ropes[0]").empty());
   }
 
   TEST_CASE("an edit that is no scene is refused with the reason, and nothing changes") {

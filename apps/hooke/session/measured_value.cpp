@@ -63,7 +63,7 @@ void add_rope(Values& values, const World& world, const SceneObject& object) {
     most = std::max(most, static_cast<double>(tension));
   }
   values.push_back({"largest tension", "N", most});
-  values.push_back({"largest thrust", "N", -least});
+  values.push_back({"largest thrust", "N", 0 - least});
   if (!points.empty()) add_vector(values, "end", "m", points[points.size() - 1]);
 }
 

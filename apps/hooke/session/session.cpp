@@ -344,10 +344,10 @@ void Session::obey(const Change& change) {
 
 void Session::obey(const Save& save) {
   const std::filesystem::path name = save.name;
-  if (name.empty() || name.has_parent_path())
+  if (name.empty() || name.has_parent_path()) {
     return say(
-        {false,
-         "a scene is saved in its own folder, from which its models and textures count: give a name only"});
+        {false, "a scene is saved in its folder, from which its models and textures count: give a name"});
+  }
   const std::string path =
       (std::filesystem::path(live_->document()->scene.path).parent_path() / name).string();
   if (std::filesystem::path(path).extension() != ".json")

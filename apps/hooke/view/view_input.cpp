@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kRadiansPerPixel = 0.006F;
 constexpr float kZoomPerNotch = 0.9F;
+constexpr float kZoomPerKey = 1.25F;
+constexpr float kLargestZoom = 4;
 /// Radius [m] and speed [m/s] of a ball for each meter between the camera and what it turns about, within
 /// bounds: a scene of a doll's house and one of a town both want balls that fit.
 constexpr double kBallRadius = 0.015;
@@ -25,7 +27,11 @@ constexpr ViewInput::KeyHelp kHelp[] = {
     {"left", "pauses and goes one step back"},
     {"-, +", "half and double speed"},
     {"R", "goes back to the start"},
-    {"U, Ctrl+Z", "goes back to before the last grab, shot, drop, pin, string or removal"},
+    {"U, Ctrl+Z", "goes back to before the last grab, shot, drop, pin, string, removal or edit"},
+    {"Ctrl+Y", "does again what was undone"},
+    {"F5", "reads the scene's file again, as happens whenever it is saved"},
+    {"I", "shows and hides the inspector: objects, their values, scenes to open"},
+    {"Ctrl +, Ctrl -", "larger and smaller panels"},
     {"B", "shoots a ball at what is under the mouse"},
     {"D", "drops a copy of the chosen object there"},
     {"P", "pins what is under the mouse, or lets it go"},
@@ -147,12 +153,34 @@ void ViewInput::key(Key key) {
       return post(Action(Remove{ray}));
     case Key::kUndo:
       return post(Undo{});
+    default:
+      return window_key(key);
+  }
+}
+
+void ViewInput::window_key(Key key) {
+  switch (key) {
+    case Key::kRedo:
+      return post(Redo{});
+    case Key::kReload:
+      return post(Reload{});
+    case Key::kInspector:
+      shows_inspector_ = !shows_inspector_;
+      return;
+    case Key::kLarger:
+      zoom_ = std::min(zoom_ * kZoomPerKey, kLargestZoom);
+      return;
+    case Key::kSmaller:
+      zoom_ = std::max(zoom_ / kZoomPerKey, 1 / kLargestZoom);
+      return;
     case Key::kHelp:
       shows_help_ = !shows_help_;
       return;
     case Key::kClose:
       wants_to_close_ = !shows_help_;
       shows_help_ = false;
+      return;
+    default:
       return;
   }
 }

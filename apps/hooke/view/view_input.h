@@ -20,20 +20,25 @@ class ViewInput {
  public:
   enum class Button : std::uint8_t { kLeft, kRight, kMiddle };
   enum class Key : std::uint8_t {
-    kPlay,      ///< Plays and pauses.
-    kStep,      ///< One step on.
-    kStepBack,  ///< One step back.
-    kRestart,   ///< Back to the start.
-    kSlower,    ///< Time passes half as fast.
-    kFaster,    ///< Twice as fast.
-    kShoot,     ///< Shoots a ball at what the mouse points at.
-    kDrop,      ///< Drops a copy of the chosen object there.
-    kPin,       ///< Pins or unpins what the mouse points at.
-    kTie,       ///< The first time takes an end, the second time ties it to another.
-    kRemove,    ///< Removes what the mouse points at.
-    kUndo,      ///< Goes back to before the last action.
-    kHelp,      ///< Shows and hides the page of keys.
-    kClose,     ///< Hides the page of keys, or closes the window.
+    kPlay,       ///< Plays and pauses.
+    kStep,       ///< One step on.
+    kStepBack,   ///< One step back.
+    kRestart,    ///< Back to the start.
+    kSlower,     ///< Time passes half as fast.
+    kFaster,     ///< Twice as fast.
+    kShoot,      ///< Shoots a ball at what the mouse points at.
+    kDrop,       ///< Drops a copy of the chosen object there.
+    kPin,        ///< Pins or unpins what the mouse points at.
+    kTie,        ///< The first time takes an end, the second time ties it to another.
+    kRemove,     ///< Removes what the mouse points at.
+    kUndo,       ///< Goes back to before the last action or edit.
+    kRedo,       ///< Does again what was undone.
+    kReload,     ///< Reads the file again.
+    kInspector,  ///< Shows and hides the inspector.
+    kLarger,     ///< Larger panels.
+    kSmaller,    ///< Smaller panels.
+    kHelp,       ///< Shows and hides the page of keys.
+    kClose,      ///< Hides the page of keys, or closes the window.
   };
   /// One key of the page of keys.
   struct KeyHelp {
@@ -57,6 +62,9 @@ class ViewInput {
   /// A line about what waits for more input; empty for none.
   [[nodiscard]] std::string_view hint() const;
   [[nodiscard]] bool shows_help() const { return shows_help_; }
+  [[nodiscard]] bool shows_inspector() const { return shows_inspector_; }
+  /// Size of the panels against what fits the window; 1 at the start.
+  [[nodiscard]] float zoom() const { return zoom_; }
   [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
   /// Number of the last command.
   [[nodiscard]] std::uint64_t posted() const { return posted_; }
@@ -76,6 +84,8 @@ class ViewInput {
     kPan,   ///< It moves the camera sideways.
   };
 
+  /// Keys that concern the window and the scene as a whole.
+  void window_key(Key key);
   void drag_on(std::array<double, 2> motion);
 
   Session& session_;
@@ -93,6 +103,8 @@ class ViewInput {
   std::optional<Ray> first_end_;        ///< First end of a string.
   std::string chosen_;
   bool shows_help_ = false;
+  bool shows_inspector_ = true;
+  float zoom_ = 1;
   bool wants_to_close_ = false;
   std::uint64_t posted_ = 0;
 };

@@ -22,6 +22,18 @@ Json objects_seen(const SessionView& view, const Eye& eye) {
   return objects;
 }
 
+Json mistakes_of(const SessionView& view) {
+  Json lines = Json::array();
+  for (const Error& error : view.file_errors) lines.push_back(to_line(error));
+  return lines;
+}
+
+Json measured_of(const SessionView& view) {
+  Json values = Json::object();
+  for (const MeasuredValue& value : view.measured) values[value.name] = value.value;
+  return values;
+}
+
 }  // namespace
 
 Result<void> ViewLog::open(const std::string& path) {
@@ -46,11 +58,20 @@ void ViewLog::write(const SessionView& view, const Eye& eye, const PictureFacts&
                {"held", view.held},
                {"undo", view.undo_count},
                {"said", view.said ? view.said->text : ""},
-               {"timeline", facts.timeline},
+               {"redo", view.redo_count},
+               {"built", view.built},
+               {"opened", view.opened},
+               {"selected", view.selected},
+               {"edited", view.edited},
+               {"mistakes", mistakes_of(view)},
+               {"measured", measured_of(view)},
+               {"boxes", facts.boxes},
+               {"font", facts.font_px},
                {"help", facts.help},
                {"gl_error", facts.gl_error},
                {"size", eye.size},
                {"objects", objects_seen(view, eye)}};
+  if (view.document) line["file"] = view.document->file;
   if (view.holding) line["hand"] = json_of_place(view.hand_place);
   file_ << line.dump() << '\n' << std::flush;
 }

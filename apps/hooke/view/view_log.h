@@ -3,6 +3,7 @@
 #include "hooke/result.h"
 #include "hooke/session/session.h"
 #include "hooke/view/eye.h"
+#include "hooke/view/widget_boxes.h"
 
 #include <array>
 #include <cstdint>
@@ -13,11 +14,12 @@ namespace hooke::app {
 
 /// What the window adds to a line of the log.
 struct PictureFacts {
-  std::uint64_t picture = 0;            ///< Number of the picture.
-  std::uint64_t posted = 0;             ///< Number of the last command that was given.
-  std::array<double, 4> timeline = {};  ///< Box of the timeline: left, top, right, bottom [screen units].
-  bool help = false;                    ///< Whether the page of keys is shown.
-  std::uint32_t gl_error = 0;           ///< Error of OpenGL since the last picture; 0 for none.
+  std::uint64_t picture = 0;   ///< Number of the picture.
+  std::uint64_t posted = 0;    ///< Number of the last command that was given.
+  WidgetBoxes boxes = {};      ///< Parts of the panels.
+  float font_px = 0;           ///< Height of the font.
+  bool help = false;           ///< Whether the page of keys is shown.
+  std::uint32_t gl_error = 0;  ///< Error of OpenGL since the last picture; 0 for none.
 };
 
 /// Writes what a window shows as lines of JSON, for tests and for those who wonder.

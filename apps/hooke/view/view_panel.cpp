@@ -11,7 +11,7 @@ namespace hooke::app {
 namespace {
 
 constexpr std::size_t kHistory = 600;
-constexpr float kPanelWidth = 300;
+constexpr float kPanelWidth = 23;  ///< In heights of the font.
 const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
 
 /// This is one curve of the plot.
@@ -43,13 +43,13 @@ void draw_curve(const std::deque<Energies>& history, const Curve& curve, ImVec2 
 }
 
 void write_wrapped(const std::string& text, ImVec4 color) {
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + kPanelWidth);
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + kPanelWidth * ImGui::GetFontSize());
   ImGui::TextColored(color, "%s", text.c_str());
   ImGui::PopTextWrapPos();
 }
 
 void build_buttons(const SessionView& view, ViewInput& input) {
-  const ImVec2 button = {68, 0};
+  const ImVec2 button = {5.2F * ImGui::GetFontSize(), 0};
   if (ImGui::Button(view.playing ? "Pause" : "Play", button)) input.key(ViewInput::Key::kPlay);
   ImGui::SameLine();
   if (ImGui::Button("Step", button)) input.key(ViewInput::Key::kStep);
@@ -63,12 +63,22 @@ void build_buttons(const SessionView& view, ViewInput& input) {
 
 void build_choice(const SessionView& view, ViewInput& input) {
   if (view.droppable.empty()) return;
-  ImGui::SetNextItemWidth(160);
+  ImGui::SetNextItemWidth(12 * ImGui::GetFontSize());
   if (!ImGui::BeginCombo("drop by D", input.chosen().c_str())) return;
   for (const std::string& name : view.droppable) {
     if (ImGui::Selectable(name.c_str(), name == input.chosen())) input.choose(name);
   }
   ImGui::EndCombo();
+}
+
+/// What is wrong with the file, and what is being done.
+void build_messages(const SessionView& view) {
+  constexpr std::size_t kMost = 5;
+  for (std::size_t i = 0; i < std::min(view.file_errors.size(), kMost); ++i)
+    write_wrapped(to_line(view.file_errors[i]), kWarningColor);
+  if (view.file_errors.size() > kMost)
+    write_wrapped("and " + std::to_string(view.file_errors.size() - kMost) + " more mistakes", kWarningColor);
+  if (!view.progress.empty()) write_wrapped("loading " + view.progress, {0.7F, 0.85F, 1, 1});
 }
 
 void build_help() {
@@ -97,7 +107,8 @@ double in_mebibytes(std::size_t bytes) {
 
 void ViewPanel::note(const SessionView& view) {
   if (view.stage != SessionView::Stage::kReady) return;
-  if (view.step < noted_step_) history_.clear();
+  if (view.step < noted_step_ || view.built != noted_world_) history_.clear();
+  noted_world_ = view.built;
   noted_step_ = view.step;
   history_.push_back(view.energies);
   if (history_.size() > kHistory) history_.pop_front();
@@ -113,7 +124,7 @@ void ViewPanel::draw_plot() const {
     }
   }
   if (!(range[1] > range[0])) range[1] = range[0] + 1;
-  const ImVec2 size = {ImGui::GetContentRegionAvail().x, 130};
+  const ImVec2 size = {ImGui::GetContentRegionAvail().x, 10 * ImGui::GetFontSize()};
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImDrawList* canvas = ImGui::GetWindowDrawList();
   canvas->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, IM_COL32(0, 0, 0, 110), 4);
@@ -131,7 +142,7 @@ void ViewPanel::draw_plot() const {
 
 void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double picture_ms) {
   ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize({kPanelWidth, 0}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize({kPanelWidth * ImGui::GetFontSize(), 0}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowBgAlpha(0.82F);
   ImGui::Begin("Simulation", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav);
   if (view.stage == SessionView::Stage::kLoading) {
@@ -150,6 +161,7 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double 
   if (!hint.empty()) write_wrapped(hint, {1, 0.9F, 0.5F, 1});
   if (view.said) write_wrapped(view.said->text, view.said->done ? ImVec4{0.7F, 0.85F, 1, 1} : kWarningColor);
   if (!view.problem.empty()) write_wrapped(view.problem, kWarningColor);
+  build_messages(view);
   ImGui::TextDisabled("keys: ? or F1");
   ImGui::End();
 }
@@ -167,10 +179,7 @@ void ViewPanel::build_timeline(const SessionView& view, ViewInput& input) {
   const std::uint64_t last = std::max(view.last_step, std::uint64_t{1});
   ImGui::SetNextItemWidth(-1);
   const bool moved = ImGui::SliderScalar("##timeline", ImGuiDataType_U64, &step, &first, &last, "step %llu");
-  const ImVec2 low = ImGui::GetItemRectMin();
-  const ImVec2 high = ImGui::GetItemRectMax();
-  timeline_box_ = {static_cast<double>(low.x), static_cast<double>(low.y), static_cast<double>(high.x),
-                   static_cast<double>(high.y)};
+  note_box(boxes_, "timeline");
   if (moved) {
     wanted_step_ = std::min(step, view.last_step);
     input.post(Seek{*wanted_step_});
@@ -183,7 +192,9 @@ void ViewPanel::build_timeline(const SessionView& view, ViewInput& input) {
 }
 
 void ViewPanel::build(const SessionView& view, ViewInput& input, double picture_ms) {
+  boxes_.clear();
   build_figures(view, input, picture_ms);
+  if (input.shows_inspector()) inspector_.build(view, input, boxes_);
   if (view.stage == SessionView::Stage::kReady) build_timeline(view, input);
   if (input.shows_help()) build_help();
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "hooke/session/session.h"
+#include "hooke/view/inspector.h"
 #include "hooke/view/view_input.h"
+#include "hooke/view/widget_boxes.h"
 
 #include <array>
 #include <cstdint>
@@ -19,8 +21,8 @@ class ViewPanel {
   /// Builds all panels for this picture. `picture_ms` is the time that a picture takes.
   void build(const SessionView& view, ViewInput& input, double picture_ms);
 
-  /// Box of the timeline's slider: left, top, right, bottom.
-  [[nodiscard]] const std::array<double, 4>& timeline_box() const { return timeline_box_; }
+  /// Where the parts of the panels were in the last picture.
+  [[nodiscard]] const WidgetBoxes& boxes() const { return boxes_; }
 
  private:
   void build_figures(const SessionView& view, ViewInput& input, double picture_ms);
@@ -29,8 +31,10 @@ class ViewPanel {
 
   std::deque<Energies> history_;
   std::uint64_t noted_step_ = 0;
+  std::uint64_t noted_world_ = 0;             ///< SessionView::built of the history.
   std::optional<std::uint64_t> wanted_step_;  ///< While the slider is dragged.
-  std::array<double, 4> timeline_box_ = {};
+  Inspector inspector_;
+  WidgetBoxes boxes_;
 };
 
 }  // namespace hooke::app

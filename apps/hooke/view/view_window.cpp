@@ -15,7 +15,9 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <deque>
 #include <exception>
 #include <imgui.h>
 #include <optional>
@@ -33,6 +35,16 @@ double milliseconds_since(WallClock::time_point start) {
   return std::chrono::duration<double, std::milli>(WallClock::now() - start).count();
 }
 
+constexpr float kLetterHeight = 13;  ///< Of the library's own letters [screen units].
+
+ImGuiStyle interface_style() {
+  ImGuiStyle style;
+  ImGui::StyleColorsDark(&style);
+  style.WindowRounding = 6;
+  style.FrameRounding = 4;
+  return style;
+}
+
 /// Starts the library of the user interface and ends it on destruction.
 class UserInterface {
  public:
@@ -41,9 +53,6 @@ class UserInterface {
     ImGui::CreateContext();
     // The library must leave no file behind.
     ImGui::GetIO().IniFilename = nullptr;
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().WindowRounding = 6;
-    ImGui::GetStyle().FrameRounding = 4;
     ready_ = ImGui_ImplGlfw_InitForOpenGL(window, true) && ImGui_ImplOpenGL3_Init("#version 330 core");
   }
   UserInterface(const UserInterface&) = delete;
@@ -62,14 +71,26 @@ class UserInterface {
   bool ready_ = false;
 };
 
+/// A key that was pressed, as the system names it.
+struct KeyPress {
+  int code = 0;
+  int modifiers = 0;
+};
+
 /// The state of one window between two pictures.
 struct Window {
   explicit Window(Session& its_session, const ViewOptions& options)
-      : session(its_session), drawing(options.style), input(its_session, camera) {}
+      : session(its_session),
+        style(options.style),
+        drawing(options.style),
+        interface_scale(options.interface_scale),
+        input(its_session, camera) {}
 
   Session& session;
   std::shared_ptr<const SessionView> view;
+  DrawingStyle style;
   SceneDrawing drawing;
+  std::optional<double> interface_scale;  ///< Size of the panels; what fits the window by default.
   render::OrbitCamera camera;
   bool has_camera = false;
   ViewInput input;
@@ -78,11 +99,32 @@ struct Window {
   PictureFacts facts;
   render::DrawList list;
   double picture_ms = 0;
-  std::size_t warned = 0;  ///< Number of warnings that were printed.
-  std::vector<Key> keys;   ///< Keys pressed since the last picture.
+  float drawn_scale = 0;           ///< Size of the panels for which letters were drawn.
+  std::size_t warned = 0;          ///< Number of warnings that were printed.
+  std::vector<Key> keys;           ///< Keys pressed since the last picture.
+  std::deque<KeyPress> presses;    ///< The same for the interface, in the order of time.
+  std::vector<int> shown_presses;  ///< Keys that the interface has seen as down in the last picture.
 };
 
+std::optional<Key> control_key(int key) {
+  switch (key) {
+    case GLFW_KEY_Z:
+      return Key::kUndo;
+    case GLFW_KEY_Y:
+      return Key::kRedo;
+    case GLFW_KEY_EQUAL:
+    case GLFW_KEY_KP_ADD:
+      return Key::kLarger;
+    case GLFW_KEY_MINUS:
+    case GLFW_KEY_KP_SUBTRACT:
+      return Key::kSmaller;
+    default:
+      return {};
+  }
+}
+
 std::optional<Key> key_of(int key, int modifiers) {
+  if ((modifiers & GLFW_MOD_CONTROL) != 0) return control_key(key);
   switch (key) {
     case GLFW_KEY_SPACE:
       return Key::kPlay;
@@ -105,8 +147,10 @@ std::optional<Key> key_of(int key, int modifiers) {
       return Key::kRemove;
     case GLFW_KEY_U:
       return Key::kUndo;
-    case GLFW_KEY_Z:
-      return (modifiers & GLFW_MOD_CONTROL) != 0 ? std::optional(Key::kUndo) : std::nullopt;
+    case GLFW_KEY_I:
+      return Key::kInspector;
+    case GLFW_KEY_F5:
+      return Key::kReload;
     case GLFW_KEY_F1:
       return Key::kHelp;
     case GLFW_KEY_ESCAPE:
@@ -119,10 +163,12 @@ std::optional<Key> key_of(int key, int modifiers) {
 /// Stores every key press for the next picture. The interface's own key states lose a key that is pressed and
 /// released between two pictures, which at three pictures a second is most of them.
 void keep_key(GLFWwindow* window, int code, int /*scancode*/, int action, int modifiers) {
+  Window& its = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+  if (action == GLFW_PRESS && code >= 0) its.presses.push_back({code, modifiers});
   const std::optional<Key> key = key_of(code, modifiers);
   const bool repeats = key == Key::kStep || key == Key::kStepBack;
   if (!key || !(action == GLFW_PRESS || (action == GLFW_REPEAT && repeats))) return;
-  static_cast<Window*>(glfwGetWindowUserPointer(window))->keys.push_back(*key);
+  its.keys.push_back(*key);
 }
 
 /// The same for signs, which lie on other keys on other keyboards.
@@ -133,9 +179,57 @@ void keep_sign(GLFWwindow* window, unsigned int sign) {
   if (sign == '+' || sign == '=') keys.push_back(Key::kFaster);
 }
 
-void begin_interface() {
+/// Size of the panels: what was asked for, else what keeps them readable on a large or dense display.
+float interface_scale(const Window& window, int height_px) {
+  if (window.interface_scale) return static_cast<float>(*window.interface_scale) * window.input.zoom();
+  constexpr float kUsualHeight = 1080;
+  const float fitting = std::round(4 * static_cast<float>(height_px) / kUsualHeight) / 4;
+  return std::clamp(fitting, 1.0F, 4.0F) * window.input.zoom();
+}
+
+/// Draws the letters anew if their size has changed: letters that are only stretched are blurred.
+void scale_interface(Window& window, int height_px) {
+  const float scale = interface_scale(window, height_px);
+  if (scale == window.drawn_scale) return;
+  window.drawn_scale = scale;
+  ImGui::GetStyle() = interface_style();
+  ImGui::GetStyle().ScaleAllSizes(scale);
+  ImFontConfig letters;
+  letters.SizePixels = std::max(1.0F, std::round(kLetterHeight * scale));
+  ImGui::GetIO().Fonts->Clear();
+  ImGui::GetIO().Fonts->AddFontDefault(&letters);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+/// Shows the interface keys that were pressed since the last picture, also those that were released again,
+/// such as Enter in a field. A key that is pressed twice is up for a picture in between.
+void show_presses(Window& window, GLFWwindow* handle) {
+  ImGuiIO& io = ImGui::GetIO();
+  const std::vector<int> before = std::exchange(window.shown_presses, {});
+  const auto is_down = [&](int code) { return glfwGetKey(handle, code) == GLFW_PRESS; };
+  for (const int code : before) io.KeysDown[code] = is_down(code);
+  io.KeyCtrl = is_down(GLFW_KEY_LEFT_CONTROL) || is_down(GLFW_KEY_RIGHT_CONTROL);
+  io.KeyShift = is_down(GLFW_KEY_LEFT_SHIFT) || is_down(GLFW_KEY_RIGHT_SHIFT);
+  const auto is_in = [](const std::vector<int>& codes, int code) {
+    return std::find(codes.begin(), codes.end(), code) != codes.end();
+  };
+  while (!window.presses.empty()) {
+    const KeyPress press = window.presses.front();
+    if (is_in(before, press.code) || is_in(window.shown_presses, press.code)) break;
+    window.presses.pop_front();
+    window.shown_presses.push_back(press.code);
+    io.KeysDown[press.code] = true;
+    io.KeyCtrl = (press.modifiers & GLFW_MOD_CONTROL) != 0;
+    io.KeyShift = (press.modifiers & GLFW_MOD_SHIFT) != 0;
+  }
+}
+
+void begin_interface(Window& window, GLFWwindow* handle, int height_px) {
+  scale_interface(window, height_px);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  show_presses(window, handle);
   // Two pictures within the clock's resolution would break an invariant of the library.
   ImGui::GetIO().DeltaTime = std::max(ImGui::GetIO().DeltaTime, 1e-5F);
   ImGui::NewFrame();
@@ -145,6 +239,11 @@ void take_view(Window& window) {
   const auto before = std::exchange(window.view, window.session.view());
   if (before == window.view) return;
   const SessionView& view = *window.view;
+  if (!before || before->built != view.built) {
+    window.drawing = SceneDrawing(window.style);
+    window.warned = 0;
+  }
+  if (!before || before->opened != view.opened) window.has_camera = false;
   window.panel.note(view);
   if (view.picture && !(before && before->picture == view.picture))
     window.drawing.record(*view.picture, view.step_seconds);
@@ -171,11 +270,15 @@ void fill_list(Window& window, int height_px) {
     std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
+Eye present_eye(const Window& window) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return eye_of(window.camera, window.drawing.origin(), static_cast<double>(size.x),
+                static_cast<double>(size.y));
+}
+
 void handle_input(Window& window, GLFWwindow* handle) {
   const ImGuiIO& io = ImGui::GetIO();
-  const Eye eye = eye_of(window.camera, window.drawing.origin(), static_cast<double>(io.DisplaySize.x),
-                         static_cast<double>(io.DisplaySize.y));
-  window.input.look(eye, *window.view,
+  window.input.look(present_eye(window), *window.view,
                     {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)});
   constexpr ViewInput::Button kButtons[] = {ViewInput::Button::kLeft, ViewInput::Button::kRight,
                                             ViewInput::Button::kMiddle};
@@ -190,25 +293,40 @@ void handle_input(Window& window, GLFWwindow* handle) {
   if (window.input.wants_to_close()) glfwSetWindowShouldClose(handle, GLFW_TRUE);
 }
 
+/// Marks the selected object, so that one finds in the picture what the list names.
+void mark_selected(const Window& window) {
+  const SessionView& view = *window.view;
+  const auto found = std::find_if(view.places.begin(), view.places.end(),
+                                  [&](const auto& place) { return place.first == view.selected; });
+  if (found == view.places.end() || !window.has_camera) return;
+  const auto pixel = pixel_of(present_eye(window), found->second);
+  if (!pixel) return;
+  const ImVec2 center = {static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])};
+  constexpr ImU32 kColor = IM_COL32(255, 210, 90, 255);
+  const float radius = 0.8F * ImGui::GetFontSize();
+  ImDrawList* canvas = ImGui::GetBackgroundDrawList();
+  canvas->AddCircle(center, radius, kColor, 24, 2);
+  canvas->AddText({center.x + 1.3F * radius, center.y - 1.6F * radius}, kColor, view.selected.c_str());
+}
+
 void write_log(Window& window, const render::Context& context) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const Eye eye = eye_of(window.camera, window.drawing.origin(), static_cast<double>(io.DisplaySize.x),
-                         static_cast<double>(io.DisplaySize.y));
   ++window.facts.picture;
   window.facts.posted = window.input.posted();
-  window.facts.timeline = window.panel.timeline_box();
+  window.facts.boxes = window.panel.boxes();
+  window.facts.font_px = ImGui::GetFontSize();
   window.facts.help = window.input.shows_help();
   window.facts.gl_error = context.take_error();
-  window.log.write(*window.view, eye, window.facts);
+  window.log.write(*window.view, present_eye(window), window.facts);
 }
 
 Result<void> draw_picture(Window& window, render::Renderer& renderer, const render::Context& context) {
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(context.window(), &width, &height);
-  begin_interface();
+  begin_interface(window, context.window(), height);
   take_view(window);
   handle_input(window, context.window());
+  mark_selected(window);
   window.panel.build(*window.view, window.input, window.picture_ms);
   ImGui::Render();
   // A minimized window has no pixels.
@@ -240,10 +358,11 @@ bool is_over(const Window& window, const ViewOptions& options) {
 }
 
 Result<void> run_window(Session& session, const ViewOptions& options) {
-  Window window(session, options);
-  if (auto opened = window.log.open(options.log); !opened) return opened;
   const auto context = render::Context::create_window(options.title, options.width, options.height);
   if (!context) return context.error();
+  // It goes before the context, which holds the pictures of its panels.
+  Window window(session, options);
+  if (auto opened = window.log.open(options.log); !opened) return opened;
   const bool fast = context.value().driver().find("llvmpipe") != std::string::npos;
   const int samples = options.samples > 0 ? options.samples : fast ? 1 : 4;
   auto renderer = render::Renderer::create(context.value(), {.width = options.width,

@@ -16,6 +16,8 @@ struct ViewOptions {
   /// Samples per pixel. 0 stands for 4, or for 1 if a software driver draws, which takes half the time.
   int samples = 0;
   DrawingStyle style = {};
+  /// Size of the panels, 1 for letters of 13 pixels; without it what fits the window.
+  std::optional<double> interface_scale = {};
   std::optional<double> stop_time = {};  ///< Closes the window when the simulated time reaches this [s].
   /// A .png file that gets the last picture before the window closes; empty for none.
   std::string screenshot = {};
