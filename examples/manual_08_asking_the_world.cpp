@@ -1,10 +1,12 @@
-/// Chapter 8 of the manual: rays, swept shapes, overlaps, a hand, forces of contacts, hits, a sensor and
-/// sleep.
+/// Chapter 8 of the manual: rays, swept shapes, overlaps, a hand, forces of contacts, hits, a sensor, sleep
+/// and debug pictures.
 
 #include "hooke/hooke.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 namespace {
 
@@ -111,9 +113,41 @@ bool what_it_weighs(Scene& scene) {
   return agrees("force on the ground [N]", force, 3 * kGravity, 0.01) && !scene.world.asleep(scene.ball);
 }
 
+/// Hands lines to a renderer; this one only measures the longest.
+class Lines : public hooke::DebugDraw {
+ public:
+  void line(hooke::DebugSubject subject, hooke::DVec3 from, hooke::DVec3 to,
+            hooke::DebugColor color) override {
+    if (subject == hooke::DebugSubject::kLoads && color == hooke::load_color(1)) reddest = to - from;
+  }
+  void point(hooke::DebugSubject, hooke::DVec3, hooke::DebugColor) override {}
+  void triangle(hooke::DebugSubject, const std::array<hooke::DVec3, 3>&, hooke::DebugColor) override {}
+  void text(hooke::DebugSubject, hooke::DVec3, std::string_view, hooke::DebugColor) override {}
+
+  hooke::DVec3 reddest;
+};
+
+/// The topmost segment of a rope that hangs is the reddest.
+bool what_is_seen() {
+  hooke::World world = hooke::World::create().value();
+  const auto rope =
+      world.add_rope({.hook_point = {0, 3, 0}, .direction = {0, -1, 0}, .total_mass = 2, .masses = 21});
+  if (!rope) return false;
+  for (int i = 0; i < 120; ++i) world.step(1.0f / 60);
+  Lines lines;
+  const auto legend = world.debug_draw(lines, {.contacts = false, .loads = true});
+  if (!legend) return false;
+  // It carries all but its own upper half: 39 of 40 halves.
+  return agrees("full red [N]", legend.value().tension, 2 * kGravity * 39 / 40, 0.01) &&
+         agrees("length of the reddest segment [m]", length(lines.reddest), 0.05, 0.01);
+}
+
 }  // namespace
 
 int main() {
   Scene scene;
-  return where_things_are(scene) && grabs_a_rope() && what_happens(scene) && what_it_weighs(scene) ? 0 : 1;
+  return where_things_are(scene) && grabs_a_rope() && what_happens(scene) && what_it_weighs(scene) &&
+                 what_is_seen()
+             ? 0
+             : 1;
 }

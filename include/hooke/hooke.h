@@ -3,6 +3,7 @@
 #include "hooke/bsp.h"
 #include "hooke/clock.h"
 #include "hooke/cut.h"
+#include "hooke/debug_draw.h"
 #include "hooke/desc.h"
 #include "hooke/event.h"
 #include "hooke/fracture.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hooke/cut.h"
+#include "hooke/debug_draw.h"
 #include "hooke/desc.h"
 #include "hooke/event.h"
 #include "hooke/id.h"
@@ -612,6 +613,11 @@ class World {
 
   /// Velocity of the air at a place [m] and time [s], in [m/s].
   [[nodiscard]] Vec3 wind_at(DVec3 place, double time) const;
+
+  /// Shows what the world knows besides where things are: see hooke/debug_draw.h. Contacts are those of the
+  /// last step in which things pressed on each other; what cloths and solids do to each other is not kept
+  /// after a step, and not shown. Returns the legend. Errors: a field of `desc` out of range.
+  Result<DebugDrawLegend> debug_draw(DebugDraw& draw, const DebugDrawDesc& desc = {}) const;
 
   /// Hash of all that the bits of later steps depend on: what moves, what it is made of, what acts on it,
   /// forces that wait, and what contacts and hooks remember. Worlds with equal hashes go on alike, whatever
