@@ -149,6 +149,7 @@ struct DrawLine {
   Color color = {1, 0.4F, 0.1F};
   float opacity = 1;
   float width_px = 1.5F;
+  bool on_top = false;  ///< Whether it is drawn over everything, also over what stands before it.
 };
 
 /// This is text over the picture, one or more lines of ASCII.

@@ -178,16 +178,18 @@ void draw_sky(const RendererData& data) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void draw_lines(const RendererData& data, const std::vector<DrawLine>& lines) {
-  if (lines.empty()) return;
+/// Draws the lines that lie on top of everything, or all others.
+void draw_lines(const RendererData& data, const std::vector<DrawLine>& lines, bool on_top) {
   std::vector<LineInstance> instances;
   instances.reserve(lines.size());
   for (const DrawLine& line : lines) {
+    if (line.on_top != on_top) continue;
     const auto c = linear_of(line.color);
     instances.push_back({{line.from.x, line.from.y, line.from.z, line.width_px},
                          {line.to.x, line.to.y, line.to.z},
                          {c[0], c[1], c[2], line.opacity}});
   }
+  if (instances.empty()) return;
   glUseProgram(data.programs.line.name());
   glDisable(GL_CULL_FACE);
   glBindVertexArray(data.lines.vertex_array.name());
@@ -231,10 +233,13 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
   draw_sky(data);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  draw_lines(data, list.lines);
+  draw_lines(data, list.lines, false);
   // What is behind is multiplied by the second color of the shader.
   glBlendFunc(GL_ONE, GL_SRC1_COLOR);
   draw_meshes(data, prepared, true);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDisable(GL_DEPTH_TEST);
+  draw_lines(data, list.lines, true);
   glDisable(GL_BLEND);
   draw_texts(data, list.texts);
   glBindSampler(kShadowDepthUnit, 0);

@@ -347,6 +347,77 @@ class View(unittest.TestCase):
         window.wait("the first is open again", lambda s: s["opened"] == 3 and "jelly" in s["objects"])
         self.end()
 
+    def test_insight_is_switched_by_keys_and_boxes(self):
+        window = self.open("--paused")
+        for _ in range(8):
+            window.key("s")
+        self.assertEqual(window.last["insight"], {})
+
+        def shows(what, condition):
+            return window.wait(what, lambda s: s["insight"] and condition(s["insight"]))["insight"]
+
+        window.do("key", "1")
+        # The ball of 2 kg and the jelly of 3 kg lie on the ground.
+        shows("contacts", lambda i: i["contacts"] > 5 and i["force"] > 10)
+        window.do("key", "1")
+        window.wait("nothing is shown", lambda s: s["insight"] == {})
+        window.do("key", "4")
+        # Half a kilogram hangs below the middle of the rope; the flag and the jelly have triangles.
+        loads = shows("loads", lambda i: i["triangles"] > 200)
+        self.assertGreater(loads["tension"], 5)
+        self.assertGreater(loads["strain"], 0)
+        window.click("show numbers")
+        shows("numbers", lambda i: i["texts"] == 3)
+        for name in ("2", "3", "5", "6", "7"):
+            lines = window.last["insight"]["lines"]
+            window.do("key", name)
+            if name in "23":
+                shows(f"lines of {name}", lambda i: i["lines"] > lines)
+        window.fresh()
+        self.end()
+
+    def test_figures_are_plotted_and_saved(self):
+        window = self.open("--paused")
+        window.click("object rope")
+        for _ in range(5):
+            window.key("s")
+        window.click("plot")
+        window.click("plot momentum")
+        window.wait("it is plotted", lambda s: s["plot"] == "momentum")
+        self.assertEqual(window.last["rows"], 6)
+        self.assertRegex(window.click("save CSV")["said"], r"^saved '.*scene-figures\.csv', 6 rows$")
+        head, *rows = (window.log.parent / "scene-figures.csv").read_text().splitlines()
+        column = head.split(",").index("rope: largest tension [N]")
+        tensions = [float(row.split(",")[column]) for row in rows]
+        self.assertEqual(len(tensions), 6)
+        # A rope of 1 kg hangs from its hook.
+        self.assertAlmostEqual(tensions[-1], 9.81, delta=0.6)
+        self.end()
+
+    def test_a_line_cuts_what_it_crosses(self):
+        window = self.open("--paused")
+        x, y = window.fresh()["objects"]["rope"]["pixel"]
+        window.key("c")
+        window.point((x - 80, y - 60))
+        window.do("mousedown", 1)
+        window.fresh()
+        window.do("mousemove", round(x + 80), round(y - 60))
+        window.fresh()
+        window.do("mouseup", 1)
+        window.wait("it is cut", lambda s: s["said"] == "cut 'rope'")
+        for _ in range(6):
+            window.key("s")
+        self.assertLess(window.last["objects"]["rope"]["place"][1], 1.37)
+        self.assertEqual(window.key("u")["said"], "undone: cut")
+        for _ in range(6):
+            window.key("s")
+        self.assertAlmostEqual(window.last["objects"]["rope"]["place"][1], 1.4, delta=0.01)
+        # The knife is laid down by Escape, and the window stays.
+        window.key("c")
+        window.key("Escape")
+        self.assertIsNone(window.program.poll())
+        self.end()
+
     def test_switches_between_scenes_leave_no_memory_behind(self):
         (pathlib.Path(self.folder.name) / "other.json").write_text(SCENE.replace("scene", "other"))
         window = self.open("--paused")

@@ -499,6 +499,20 @@ TEST_SUITE("render/renderer") {
     }
   }
 
+  TEST_CASE("a line on top is seen through what stands before it") {
+    auto renderer = make_renderer();
+    if (!renderer) return;
+    DrawList list;
+    list.ground.reset();
+    list.camera = {{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 45};
+    list.spheres = {{{0, 0, 0}, 0.5F, {0.2F, 0.9F, 0.2F}}};
+    for (const bool on_top : {false, true}) {
+      list.lines = {{{0, -1, -1}, {0, 1, -1}, {1, 0, 0}, 1, 6, on_top}};
+      const auto pixel = pixel_of(draw(*renderer, list), list.camera, {0, 0, 0});
+      CHECK((pixel.r > 2 * pixel.g) == on_top);
+    }
+  }
+
   TEST_CASE("text stands where it should") {
     auto renderer = make_renderer();
     if (!renderer) return;

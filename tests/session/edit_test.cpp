@@ -3,6 +3,7 @@
 
 #include "../temporary_folder.h"
 
+#include <algorithm>
 #include <chrono>
 #include <doctest/doctest.h>
 #include <fstream>
@@ -182,6 +183,97 @@ TEST_SUITE("session/edit") {
     CHECK(wind.keys.front().path == "world.wind.velocity");
     CHECK(wind.keys.front().unit == "m/s");
     CHECK(keys_of(*view->document, "added[0].ropes[0]").empty());
+  }
+
+  TEST_CASE("insight shows what is wished, with colors whose scale fades and arrows of one length") {
+    Desk desk;
+    desk.done(MakeSteps{240});
+    CHECK(desk.session->view()->insight == nullptr);
+    InsightWish wish = {.arrow = 0.5};
+    wish.desc.loads = true;
+    wish.desc.texts = true;
+    auto view = desk.done(ShowInsight{wish});
+    REQUIRE(view->insight != nullptr);
+    CHECK(view->insight->lines.size() == 15);
+    CHECK(view->insight->legend.full_tension == view->insight->legend.tension);
+    // Of a rope of 2 kg with 3 kg at its end all but half a segment's share hangs below its first segment.
+    CHECK(view->insight->legend.tension == doctest::Approx((5 - 2.0 / 30) * 9.81).epsilon(0.03));
+    CHECK(view->insight->texts.size() == 1);
+    view = desk.done(Change{"world.gravity", "[0, -981e-3, 0]"});
+    // The scale falls to the half in two seconds.
+    const double before = view->insight->legend.full_tension;
+    view = desk.done(MakeSteps{120});
+    CHECK(view->insight->legend.tension == doctest::Approx((5 - 2.0 / 30) * 0.981).epsilon(0.1));
+    CHECK(view->insight->legend.full_tension == doctest::Approx(before / 2).epsilon(0.02));
+    view = desk.done(ShowInsight{});
+    CHECK(view->insight == nullptr);
+  }
+
+  TEST_CASE("figures over time are those of the motion, end with a rewind, and can be saved as a table") {
+    Desk desk;
+    desk.done(Select{"ball"});
+    for (int i = 0; i < 60; ++i) desk.done(MakeSteps{1});
+    const auto view = desk.session->view();
+    const History& history = *view->history;
+    CHECK(history.size() == 61);
+    const History::Curve all = history.curve("ball: center y", 100);
+    REQUIRE(all.size() == 61);
+    for (const auto& [time, height] : all)
+      CHECK(height == doctest::Approx(50 - 0.5 * 9.81 * time * time).epsilon(0.003));
+    CHECK(history.curve("ball: center y", 0.51).size() == 31);
+    CHECK(history.curve("substeps", 100).back()[1] > 0);
+    CHECK(history.curve("ball: charm", 100).empty());
+    desk.done(Seek{20});
+    CHECK(history.curve("ball: center y", 100).back()[0] == doctest::Approx(20.0 / 60));
+    // Another object has figures from now on; those of the world go on.
+    desk.done(Select{"rope"});
+    CHECK(history.curve("ball: center y", 100).empty());
+    CHECK(history.curve("rope: length", 100).size() == 1);
+    CHECK(history.curve("energy", 100).size() == 21);
+    CHECK(desk.done(SaveFigures{})->said->text ==
+          "saved '" + desk.folder / "scene-figures.csv" + "', 21 rows");
+    const std::string table = read(desk.folder / "scene-figures.csv");
+    CHECK(table.starts_with("step,time [s],kinetic energy [J],"));
+    CHECK(std::count(table.begin(), table.end(), '\n') == 22);
+    const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+    std::istringstream lines(table);
+    std::string head;
+    std::getline(lines, head);
+    for (std::string line; std::getline(lines, line);) CHECK(commas(line) == commas(head));
+  }
+
+  TEST_CASE("a line cuts what it crosses, and undo joins it again") {
+    Desk desk;
+    desk.done(Select{"rope"});
+    const auto ray = [](DVec3 to) {
+      const DVec3 eye = {5, 1.5, 5};
+      return Ray{eye, 100.0 * (to - eye)};
+    };
+    desk.done(MakeSteps{30});
+    auto view = desk.done(Action(Cut{ray({4, 1.3, 0}), ray({4.5, 1.3, 0})}));
+    CHECK_FALSE(view->said->done);
+    CHECK(view->said->text == "the line crosses nothing that can be cut");
+    view = desk.done(Action(Cut{ray({4, 1.3, 0}), ray({6, 1.3, 0})}));
+    CHECK(view->said->text == "cut 'rope'");
+    const double before = figure(*view, "end y");
+    view = desk.done(MakeSteps{30});
+    CHECK(before - figure(*view, "end y") == doctest::Approx(0.5 * 9.81 * 0.25).epsilon(0.05));
+    view = desk.done(Undo{});
+    CHECK(view->said->text == "undone: cut");
+    view = desk.done(MakeSteps{30});
+    CHECK(figure(*view, "end y") == doctest::Approx(before).epsilon(1e-3));
+  }
+
+  TEST_CASE("what the engine gives up is told with what helps") {
+    Desk desk(
+        R"({"version": 1, "cloths": [{"name": "strip", "columns": 12, "rows": 3, "width": 0.55, "height": 0.1,
+      "areal_density": 0.2, "row_direction": [0, 0, 1], "bend": "angle", "bend_stiffness": 0.3,
+      "pins": [{"column": 0}, {"column": 1}]}]})");
+    auto view = desk.done(MakeSteps{2});
+    REQUIRE(view->troubles.size() == 1);
+    CHECK(view->troubles[0].starts_with("'strip' has hardly any of its bend_stiffness of 0.3 N m"));
+    view = desk.done(Change{"cloths[0].bend", "\"yarn\""});
+    CHECK(desk.done(MakeSteps{2})->troubles.empty());
   }
 
   TEST_CASE("an edit that is no scene is refused with the reason, and nothing changes") {

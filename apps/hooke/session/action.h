@@ -55,6 +55,11 @@ struct Tie {
 struct Remove {
   Ray ray = {};
 };
+/// Cuts ropes, cloths and solids along the plane between two rays from one eye.
+struct Cut {
+  Ray first = {};
+  Ray second = {};
+};
 
 /// Takes over what an edited scene says of gravity, wind and workers: see can_change_live.
 struct Edit {
@@ -62,7 +67,7 @@ struct Edit {
   std::string what = {};  ///< What was changed, for the user.
 };
 
-using Action = std::variant<Grab, MoveHand, Release, Shoot, Drop, Pin, Tie, Remove, Edit>;
+using Action = std::variant<Grab, MoveHand, Release, Shoot, Drop, Pin, Tie, Remove, Cut, Edit>;
 
 /// What came of an action.
 struct Outcome {

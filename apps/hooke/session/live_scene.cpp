@@ -30,7 +30,7 @@ constexpr double kUsualReach = 0.5;  ///< [m]
 /// What undo calls an action; empty for one that belongs to a grip.
 std::string_view title_of(const Action& action) {
   static constexpr std::string_view kTitles[] = {"grab", "",    "",        "shot", "drop",
-                                                 "pin",  "tie", "removal", "edit"};
+                                                 "pin",  "tie", "removal", "cut",  "edit"};
   static_assert(std::size(kTitles) == std::variant_size_v<Action>);
   return kTitles[action.index()];
 }
@@ -356,6 +356,28 @@ Outcome LiveScene::perform(const Remove& remove) {
   const Result<void> removed = simulation_.remove(target->name);
   if (!removed) return {false, to_line(removed.error())};
   return {true, "removed '" + target->name + "'"};
+}
+
+Outcome LiveScene::perform(const Cut& cut) {
+  const DVec3 eye = cut.first.origin;
+  const Result<CutResult> done =
+      simulation_.world().cut({.from = {eye, eye + cut.first.motion}, .to = {eye, eye + cut.second.motion}});
+  if (!done) return {false, to_line(done.error())};
+  const CutResult& result = done.value();
+  std::string names;
+  for (const SceneObject& object : simulation_.objects()) {
+    const auto is_it = [&](const auto& list, auto id, auto member) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.*member == id; });
+    };
+    const bool is_cut = is_it(result.ropes, object.rope, &RopeCut::rope) ||
+                        is_it(result.cloths, object.cloth, &ClothCut::cloth) ||
+                        is_it(result.solids, object.solid, &SolidCut::solid);
+    if (is_cut) names += (names.empty() ? "'" : ", '") + object.name + "'";
+  }
+  if (!names.empty()) return {true, "cut " + names};
+  if (result.refused.empty()) return {false, "the line crosses nothing that can be cut"};
+  const CutRefusal& refusal = result.refused.front();
+  return {false, "'" + name_of({}, refusal.object) + "' is not cut: " + refusal.why};
 }
 
 Outcome LiveScene::perform(const Edit& edit) {

@@ -86,6 +86,7 @@ class LiveScene {
   Outcome perform(const Pin& pin);
   Outcome perform(const Tie& tie);
   Outcome perform(const Remove& remove);
+  Outcome perform(const Cut& cut);
   Outcome perform(const Edit& edit);
   Outcome pin_body(const Target& target);
   Outcome add(const SceneObjects& objects, const std::string& text);

@@ -134,7 +134,7 @@ Session::LivePtr Session::build(SharedDocument document) {
 }
 
 bool Session::load() {
-  watch_.watch(file_);
+  file_watch_.watch(file_);
   Loaded<SceneDocument> document = loader_.read(file_);
   LivePtr live;
   if (document) {
@@ -159,6 +159,10 @@ bool Session::load() {
 void Session::take(LivePtr live) {
   live_ = std::move(live);
   capture_ = {};
+  insight_ = {};
+  trouble_watch_.emplace(live_->simulation());
+  state_.troubles.clear();
+  history_->clear();
   ++state_.built;
   state_.step_seconds = static_cast<double>(live_->simulation().scene().dt);
   state_.droppable = names_to_drop(live_->simulation().scene());
@@ -214,7 +218,7 @@ std::vector<Command> Session::wait() {
 bool Session::look_at_file() {
   if (WallClock::now() < next_look_) return false;
   next_look_ = WallClock::now() + kLookInterval;
-  if (!watch_.was_saved()) return false;
+  if (!file_watch_.was_saved()) return false;
   obey(Reload{});
   return true;
 }
@@ -300,7 +304,7 @@ void Session::obey(const Open& open) {
   state_.file_errors = std::exchange(state_.errors, {});
   if (!live) return say({false, "'" + open.file + "' cannot be opened"});
   file_ = open.file;
-  watch_.watch(file_);
+  file_watch_.watch(file_);
   past_.clear();
   future_.clear();
   state_.selected.clear();
@@ -310,7 +314,7 @@ void Session::obey(const Open& open) {
 }
 
 void Session::obey(const Reload& /*reload*/) {
-  watch_.watch(file_);
+  file_watch_.watch(file_);
   Loaded<SceneDocument> document = loader_.read(file_);
   state_.file_errors = std::move(document.errors);
   if (!document) return say({false, "the file has a mistake; the scene stays as it was"});
@@ -354,7 +358,7 @@ void Session::obey(const Save& save) {
     return say({false, "a scene's name ends with .json"});
   const Result<void> written = process::write_file(path, live_->document()->text);
   if (!written) return say({false, to_line(written.error())});
-  if (path == file_) watch_.watch(file_);
+  if (path == file_) file_watch_.watch(file_);
   saved_ = live_->document();
   say({true, "saved '" + path + "'"});
 }
@@ -363,11 +367,26 @@ void Session::obey(const Select& select) {
   state_.selected = select.name;
 }
 
+void Session::obey(const ShowInsight& show) {
+  wish_ = show.wish;
+}
+
+void Session::obey(const SaveFigures& /*save*/) {
+  const std::filesystem::path scene = live_->document()->scene.path;
+  const std::string path = (scene.parent_path() / (scene.stem().string() + "-figures.csv")).string();
+  const Result<void> written = process::write_file(path, history_->csv());
+  if (!written) return say({false, to_line(written.error())});
+  say({true, "saved '" + path + "', " + std::to_string(history_->size()) + " rows"});
+}
+
 void Session::step() {
   const auto start = WallClock::now();
   const Result<void> done = live_->step();
   smooth(state_.step_ms, std::chrono::duration<double, std::milli>(WallClock::now() - start).count());
-  if (done) return;
+  if (done) {
+    trouble_watch_->look(live_->simulation(), live_->report());
+    return;
+  }
   state_.playing = false;
   state_.problem = to_line(done.error());
 }
@@ -386,6 +405,21 @@ bool Session::step_if_due() {
   return true;
 }
 
+void Session::measure_all() {
+  const Simulation& simulation = live_->simulation();
+  std::vector<MeasuredValue> all = measure(simulation, "");
+  state_.measured = state_.selected.empty() ? all : measure(simulation, state_.selected);
+  const StepReport& report = live_->report();
+  all.push_back({"detect", "ms", report.detect_ms});
+  all.push_back({"prepare", "ms", report.prepare_ms});
+  all.push_back({"substeps", "ms", report.substep_ms});
+  all.push_back({"finish", "ms", report.finish_ms});
+  const std::vector<MeasuredValue> none;
+  history_->note(live_->step_count(), simulation.world().time(), all, state_.selected,
+                 state_.selected.empty() ? none : state_.measured);
+  state_.history = history_;
+}
+
 void Session::publish() {
   const Simulation& simulation = live_->simulation();
   const World& world = simulation.world();
@@ -393,8 +427,7 @@ void Session::publish() {
   state_.step = live_->step_count();
   state_.last_step = live_->last_step();
   state_.time = world.time();
-  const Energy energy = world.measure().energy;
-  state_.energies = {energy.kinetic, energy.potential, energy.elastic};
+  measure_all();
   state_.holding = live_->hand().holds();
   state_.held = live_->held();
   state_.hand_place = live_->hand().place(world);
@@ -405,11 +438,14 @@ void Session::publish() {
   state_.edited = saved_ != live_->document();
   if (!state_.listed || state_.listed->size() != simulation.objects().size())
     state_.listed = std::make_shared<const std::vector<ListedObject>>(list_of(simulation));
-  state_.measured = measure(simulation, state_.selected);
+  state_.troubles.clear();
+  for (const RunWarning& warning : trouble_watch_->warnings()) state_.troubles.push_back(warning.line());
   state_.moments = timeline.moments();
   state_.timeline_bytes = timeline.bytes();
   state_.timeline_interval = timeline.interval();
   state_.picture = std::make_shared<const SceneState>(capture_.capture(simulation, world.time()));
+  state_.insight = insight_.make(world, wish_, world.time() - shown_time_);
+  shown_time_ = world.time();
   for (std::string& line : capture_.take_warnings()) state_.warnings.push_back(std::move(line));
   state_.places = places_of(simulation);
   publish(state_);

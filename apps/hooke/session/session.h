@@ -1,8 +1,11 @@
 #pragma once
 
 #include "hooke/drawing/scene_capture.h"
+#include "hooke/run_watch.h"
 #include "hooke/scene_io.h"
 #include "hooke/session/action.h"
+#include "hooke/session/history.h"
+#include "hooke/session/insight.h"
 #include "hooke/session/live_scene.h"
 #include "hooke/session/measured_value.h"
 #include "hooke/session/scene_document.h"
@@ -66,15 +69,15 @@ struct Select {
   std::string name = {};
 };
 
-using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Redo, Restart, Open, Reload, Change, Save,
-                             Select, Action>;
-
-/// [J]
-struct Energies {
-  double kinetic = 0;
-  double potential = 0;  ///< Potential energy of gravity.
-  double elastic = 0;
+/// Writes all figures so far into a .csv file beside the scene.
+struct SaveFigures {};
+/// Says what the view shows besides objects.
+struct ShowInsight {
+  InsightWish wish = {};
 };
+
+using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Redo, Restart, Open, Reload, Change, Save,
+                             Select, ShowInsight, SaveFigures, Action>;
 
 /// An object of the scene, for lists.
 struct ListedObject {
@@ -117,21 +120,24 @@ struct SessionView {
   double time = 0;              ///< [s]
   double step_seconds = 0;      ///< Length of a step [s].
   double step_ms = 0;           ///< Time that the last steps took, smoothed.
-  Energies energies = {};
-  bool holding = false;        ///< Whether the hand holds something.
-  std::string held = {};       ///< Name of what it holds.
-  DVec3 hand_place = {};       ///< The place that is held [m].
-  DVec3 hand_target = {};      ///< Where the hand wants it [m].
-  std::size_t undo_count = 0;  ///< Number of actions and edits that undo can take back.
-  std::size_t redo_count = 0;  ///< Number of those that redo can do again.
-  std::size_t moments = 0;     ///< States that the timeline holds.
+  bool holding = false;         ///< Whether the hand holds something.
+  std::string held = {};        ///< Name of what it holds.
+  DVec3 hand_place = {};        ///< The place that is held [m].
+  DVec3 hand_target = {};       ///< Where the hand wants it [m].
+  std::size_t undo_count = 0;   ///< Number of actions and edits that undo can take back.
+  std::size_t redo_count = 0;   ///< Number of those that redo can do again.
+  std::size_t moments = 0;      ///< States that the timeline holds.
   std::size_t timeline_bytes = 0;
-  std::size_t timeline_budget = 0;                 ///< [bytes]
-  std::uint64_t timeline_interval = 0;             ///< Steps between states.
-  std::string problem = {};                        ///< Why it does not play on; empty for no problem.
+  std::size_t timeline_budget = 0;      ///< [bytes]
+  std::uint64_t timeline_interval = 0;  ///< Steps between states.
+  std::string problem = {};             ///< Why it does not play on; empty for no problem.
+  /// What the engine had to give up since the world was made, with what helps; a line each.
+  std::vector<std::string> troubles = {};
+  std::shared_ptr<const History> history = {};     ///< Figures over time; it goes on.
   std::vector<std::string> warnings = {};          ///< Textures that could not be read; all so far.
   std::vector<std::string> droppable = {};         ///< Names that Drop takes.
   std::shared_ptr<const SceneState> picture = {};  ///< What to draw.
+  std::shared_ptr<const Insight> insight = {};     ///< What to draw on top; null for nothing.
   /// Name and a place [m] of each object that is drawn: a body's origin, a middle or last point of others.
   std::vector<std::pair<std::string, DVec3>> places = {};
   /// When the view was made.
@@ -192,9 +198,13 @@ class Session {
   void obey(const Change& change);
   void obey(const Save& save);
   void obey(const Select& select);
+  void obey(const ShowInsight& show);
+  void obey(const SaveFigures& save);
   void say(Outcome outcome);
   void replace(LivePtr live);
   void step();
+  /// Measures the world and the selected object.
+  void measure_all();
   /// Returns whether it made a step, or stopped for good.
   bool step_if_due();
   void publish();
@@ -206,10 +216,15 @@ class Session {
   LivePtr live_;
   std::vector<LivePtr> past_;    ///< What edits and reloads replaced, the last one last.
   std::vector<LivePtr> future_;  ///< What undo replaced, likewise.
-  FileWatch watch_;
+  FileWatch file_watch_;
   SharedDocument saved_;             ///< What the file says.
   WallClock::time_point next_look_;  ///< When to look at the file again.
   SceneCapture capture_;
+  std::optional<RunWatch> trouble_watch_;
+  std::shared_ptr<History> history_ = std::make_shared<History>();
+  InsightWish wish_;
+  InsightMaker insight_;
+  double shown_time_ = 0;      ///< Time of the last view [s].
   SessionView state_;          ///< The next view, but for what follows from the scene.
   WallClock::time_point due_;  ///< When the next step is due.
 

@@ -12,6 +12,7 @@ constexpr float kRadiansPerPixel = 0.006F;
 constexpr float kZoomPerNotch = 0.9F;
 constexpr float kZoomPerKey = 1.25F;
 constexpr float kLargestZoom = 4;
+constexpr double kArrowShare = 0.12;  ///< Length of the longest arrow over the distance of the camera.
 /// Radius [m] and speed [m/s] of a ball for each meter between the camera and what it turns about, within
 /// bounds: a scene of a doll's house and one of a town both want balls that fit.
 constexpr double kBallRadius = 0.015;
@@ -27,19 +28,39 @@ constexpr ViewInput::KeyHelp kHelp[] = {
     {"left", "pauses and goes one step back"},
     {"-, +", "half and double speed"},
     {"R", "goes back to the start"},
-    {"U, Ctrl+Z", "goes back to before the last grab, shot, drop, pin, string, removal or edit"},
+    {"U, Ctrl+Z", "goes back to before the last grab, shot, drop, pin, string, cut, removal or edit"},
     {"Ctrl+Y", "does again what was undone"},
     {"F5", "reads the scene's file again, as happens whenever it is saved"},
     {"I", "shows and hides the inspector: objects, their values, scenes to open"},
+    {"1", "contacts: normals green, forces red, friction yellow"},
+    {"2", "velocities: the way in 0.1 s"},
+    {"3", "boxes around shapes and deformables"},
+    {"4", "loads: tensions and strains as colors"},
+    {"5", "hooks: places, gaps, axes"},
+    {"6", "who sleeps"},
+    {"7", "which way contacts and hooks are solved"},
+    {"8", "numbers beside 1, 2, 4 and 5"},
     {"Ctrl +, Ctrl -", "larger and smaller panels"},
     {"B", "shoots a ball at what is under the mouse"},
     {"D", "drops a copy of the chosen object there"},
     {"P", "pins what is under the mouse, or lets it go"},
     {"H", "ties: once at each end of a string"},
+    {"C", "takes the knife: the next drag draws the line of a cut"},
     {"Delete", "removes what is under the mouse"},
     {"?, F1", "shows and hides this page"},
     {"Escape", "closes this page, or the window"},
 };
+
+/// In the order of their keys.
+constexpr ViewInput::InsightChoice kInsight[] = {
+    {"contacts", ViewInput::Key::kContacts, &DebugDrawDesc::contacts},
+    {"velocities", ViewInput::Key::kVelocities, &DebugDrawDesc::velocities},
+    {"boxes", ViewInput::Key::kBounds, &DebugDrawDesc::bounds},
+    {"loads", ViewInput::Key::kLoads, &DebugDrawDesc::loads},
+    {"hooks", ViewInput::Key::kHooks, &DebugDrawDesc::hooks},
+    {"sleep", ViewInput::Key::kSleep, &DebugDrawDesc::sleep},
+    {"routes", ViewInput::Key::kRoutes, &DebugDrawDesc::routes},
+    {"numbers", ViewInput::Key::kNumbers, &DebugDrawDesc::texts}};
 
 }  // namespace
 
@@ -71,6 +92,7 @@ void ViewInput::drag_on(std::array<double, 2> motion) {
   const auto height = static_cast<float>(eye_.size[1]);
   switch (drag_) {
     case Drag::kNone:
+    case Drag::kCut:
       break;
     case Drag::kAsks:
       waiting_ = {waiting_[0] + motion[0], waiting_[1] + motion[1]};
@@ -95,6 +117,11 @@ void ViewInput::press(Button button) {
   if (button == Button::kRight) drag_ = Drag::kTurn;
   if (button == Button::kMiddle) drag_ = Drag::kPan;
   if (button != Button::kLeft) return;
+  if (std::exchange(has_knife_, false)) {
+    cut_start_ = mouse_;
+    drag_ = Drag::kCut;
+    return;
+  }
   post(Action(Grab{ray_through(eye_, mouse_)}));
   grab_ = posted_;
   waiting_ = {};
@@ -103,9 +130,12 @@ void ViewInput::press(Button button) {
 
 void ViewInput::release(Button button) {
   const bool was_left = drag_ == Drag::kAsks || drag_ == Drag::kHand;
-  const bool ends = button == Button::kLeft ? was_left || drag_ == Drag::kTurn
+  const bool cuts = drag_ == Drag::kCut;
+  const bool ends = button == Button::kLeft ? was_left || cuts || drag_ == Drag::kTurn
                                             : drag_ == Drag::kTurn || drag_ == Drag::kPan;
   if (!ends) return;
+  if (cuts && cut_start_ != mouse_)
+    post(Action(Cut{ray_through(eye_, cut_start_), ray_through(eye_, mouse_)}));
   if (was_left) post(Action(Release{}));
   drag_ = Drag::kNone;
 }
@@ -124,6 +154,8 @@ void ViewInput::key(Key key) {
   const Ray ray = ray_through(eye_, mouse_);
   const auto distance = static_cast<double>(camera_.distance);
   if (key != Key::kTie) first_end_.reset();
+  const bool had_knife = key != Key::kCut && std::exchange(has_knife_, false);
+  if (had_knife && key == Key::kClose) return;
   switch (key) {
     case Key::kPlay:
       return post(Play{!playing_});
@@ -151,6 +183,9 @@ void ViewInput::key(Key key) {
       return;
     case Key::kRemove:
       return post(Action(Remove{ray}));
+    case Key::kCut:
+      has_knife_ = !has_knife_;
+      return;
     case Key::kUndo:
       return post(Undo{});
     default:
@@ -158,7 +193,19 @@ void ViewInput::key(Key key) {
   }
 }
 
+bool ViewInput::insight_key(Key key) {
+  const auto* const found = std::find_if(std::begin(kInsight), std::end(kInsight),
+                                         [&](const InsightChoice& one) { return one.key == key; });
+  if (found == std::end(kInsight)) return false;
+  bool& chosen = insight_.desc.*found->shown;
+  chosen = !chosen;
+  insight_.arrow = kArrowShare * static_cast<double>(camera_.distance);
+  post(ShowInsight{insight_});
+  return true;
+}
+
 void ViewInput::window_key(Key key) {
+  if (insight_key(key)) return;
   switch (key) {
     case Key::kRedo:
       return post(Redo{});
@@ -185,8 +232,18 @@ void ViewInput::window_key(Key key) {
   }
 }
 
+std::span<const ViewInput::InsightChoice> ViewInput::insight_choices() {
+  return kInsight;
+}
+
 std::string_view ViewInput::hint() const {
+  if (has_knife_) return "Drag a line across what is to be cut";
   return first_end_ ? "Point at the other end of the string and press H" : "";
+}
+
+std::optional<std::array<std::array<double, 2>, 2>> ViewInput::cut_line() const {
+  if (drag_ != Drag::kCut) return {};
+  return std::array{cut_start_, mouse_};
 }
 
 }  // namespace hooke::app

@@ -31,14 +31,29 @@ class ViewInput {
     kPin,        ///< Pins or unpins what the mouse points at.
     kTie,        ///< The first time takes an end, the second time ties it to another.
     kRemove,     ///< Removes what the mouse points at.
+    kCut,        ///< Takes the knife, or lays it down: the next drag is a cut.
     kUndo,       ///< Goes back to before the last action or edit.
     kRedo,       ///< Does again what was undone.
     kReload,     ///< Reads the file again.
     kInspector,  ///< Shows and hides the inspector.
     kLarger,     ///< Larger panels.
     kSmaller,    ///< Smaller panels.
-    kHelp,       ///< Shows and hides the page of keys.
-    kClose,      ///< Hides the page of keys, or closes the window.
+    kContacts,   ///< Shows and hides contacts; the ones that follow do the same for their subjects.
+    kVelocities,
+    kBounds,
+    kLoads,
+    kHooks,
+    kSleep,
+    kRoutes,
+    kNumbers,
+    kHelp,   ///< Shows and hides the page of keys.
+    kClose,  ///< Hides the page of keys, or closes the window.
+  };
+  /// One of the subjects that can be shown besides objects, and its key.
+  struct InsightChoice {
+    const char* name;
+    Key key;
+    bool DebugDrawDesc::*shown;
   };
   /// One key of the page of keys.
   struct KeyHelp {
@@ -61,8 +76,14 @@ class ViewInput {
 
   /// A line about what waits for more input; empty for none.
   [[nodiscard]] std::string_view hint() const;
+  /// The line of a cut while it is drawn [screen units].
+  [[nodiscard]] std::optional<std::array<std::array<double, 2>, 2>> cut_line() const;
   [[nodiscard]] bool shows_help() const { return shows_help_; }
   [[nodiscard]] bool shows_inspector() const { return shows_inspector_; }
+  /// All subjects that can be shown besides objects.
+  [[nodiscard]] static std::span<const InsightChoice> insight_choices();
+  /// What is shown besides objects.
+  [[nodiscard]] const DebugDrawDesc& insight() const { return insight_.desc; }
   /// Size of the panels against what fits the window; 1 at the start.
   [[nodiscard]] float zoom() const { return zoom_; }
   [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
@@ -82,10 +103,13 @@ class ViewInput {
     kHand,  ///< It pulls what the hand holds.
     kTurn,  ///< It turns the camera.
     kPan,   ///< It moves the camera sideways.
+    kCut,   ///< It draws the line of a cut.
   };
 
   /// Keys that concern the window and the scene as a whole.
   void window_key(Key key);
+  /// Keys of what is shown besides objects. Returns whether it is one.
+  bool insight_key(Key key);
   void drag_on(std::array<double, 2> motion);
 
   Session& session_;
@@ -101,7 +125,10 @@ class ViewInput {
   std::array<double, 2> waiting_ = {};  ///< Motion of the mouse while it asks.
   std::optional<DVec3> sent_;           ///< Target that the hand was given last [m].
   std::optional<Ray> first_end_;        ///< First end of a string.
+  bool has_knife_ = false;
+  std::array<double, 2> cut_start_ = {};
   std::string chosen_;
+  InsightWish insight_;
   bool shows_help_ = false;
   bool shows_inspector_ = true;
   float zoom_ = 1;

@@ -34,6 +34,16 @@ Json measured_of(const SessionView& view) {
   return values;
 }
 
+/// How much a debug picture has, and its legend.
+Json insight_of(const SessionView& view) {
+  if (!view.insight) return Json::object();
+  const Insight& insight = *view.insight;
+  return {{"lines", insight.lines.size()},        {"triangles", insight.triangles.size()},
+          {"texts", insight.texts.size()},        {"contacts", insight.legend.contacts},
+          {"force", insight.legend.force},        {"tension", insight.legend.full_tension},
+          {"strain", insight.legend.full_strain}, {"asleep", insight.legend.asleep}};
+}
+
 }  // namespace
 
 Result<void> ViewLog::open(const std::string& path) {
@@ -65,6 +75,10 @@ void ViewLog::write(const SessionView& view, const Eye& eye, const PictureFacts&
                {"edited", view.edited},
                {"mistakes", mistakes_of(view)},
                {"measured", measured_of(view)},
+               {"insight", insight_of(view)},
+               {"troubles", view.troubles},
+               {"plot", facts.plot},
+               {"rows", view.history ? view.history->size() : 0},
                {"boxes", facts.boxes},
                {"font", facts.font_px},
                {"help", facts.help},

@@ -18,6 +18,7 @@ struct PictureFacts {
   std::uint64_t posted = 0;    ///< Number of the last command that was given.
   WidgetBoxes boxes = {};      ///< Parts of the panels.
   float font_px = 0;           ///< Height of the font.
+  std::string plot = {};       ///< What is plotted.
   bool help = false;           ///< Whether the page of keys is shown.
   std::uint32_t gl_error = 0;  ///< Error of OpenGL since the last picture; 0 for none.
 };

@@ -1,46 +1,18 @@
 #include "hooke/view/view_panel.h"
 
+#include "hooke/view/insight_panel.h"
+
 #include <algorithm>
-#include <cmath>
 #include <imgui.h>
 #include <string>
-#include <vector>
 
 namespace hooke::app {
 
 namespace {
 
-constexpr std::size_t kHistory = 600;
 constexpr float kPanelWidth = 23;  ///< In heights of the font.
 const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
-
-/// This is one curve of the plot.
-struct Curve {
-  const char* name = "";
-  ImU32 color = 0;
-  double (*value)(const Energies&) = nullptr;
-};
-
-const std::array<Curve, 4> kCurves = {{
-    {"kinetic", IM_COL32(90, 170, 255, 255), [](const Energies& e) { return e.kinetic; }},
-    {"potential", IM_COL32(120, 210, 120, 255), [](const Energies& e) { return e.potential; }},
-    {"elastic", IM_COL32(240, 150, 80, 255), [](const Energies& e) { return e.elastic; }},
-    {"total", IM_COL32(240, 240, 240, 255),
-     [](const Energies& e) { return e.kinetic + e.potential + e.elastic; }},
-}};
-
-void draw_curve(const std::deque<Energies>& history, const Curve& curve, ImVec2 corner, ImVec2 size,
-                const std::array<double, 2>& range) {
-  std::vector<ImVec2> points;
-  points.reserve(history.size());
-  for (const Energies& energies : history) {
-    const double part = (curve.value(energies) - range[0]) / (range[1] - range[0]);
-    const float along = static_cast<float>(points.size()) / static_cast<float>(kHistory - 1);
-    points.emplace_back(corner.x + along * size.x, corner.y + (1 - static_cast<float>(part)) * size.y);
-  }
-  ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), curve.color, 0,
-                                          1.5F);
-}
+const ImVec4 kTroubleColor = {1, 0.75F, 0.35F, 1};
 
 void write_wrapped(const std::string& text, ImVec4 color) {
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + kPanelWidth * ImGui::GetFontSize());
@@ -81,6 +53,18 @@ void build_messages(const SessionView& view) {
   if (!view.progress.empty()) write_wrapped("loading " + view.progress, {0.7F, 0.85F, 1, 1});
 }
 
+/// What the engine had to give up, and what helps.
+void build_troubles(const SessionView& view) {
+  if (view.troubles.empty()) return;
+  const std::string title = std::to_string(view.troubles.size()) + " warnings###warnings";
+  if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
+  constexpr std::size_t kMost = 6;
+  for (std::size_t i = 0; i < std::min(view.troubles.size(), kMost); ++i)
+    write_wrapped(view.troubles[i], kTroubleColor);
+  if (view.troubles.size() > kMost)
+    write_wrapped("and " + std::to_string(view.troubles.size() - kMost) + " more", kTroubleColor);
+}
+
 void build_help() {
   const ImVec2 center = ImGui::GetMainViewport()->GetCenter();
   ImGui::SetNextWindowPos(center, ImGuiCond_Always, {0.5F, 0.5F});
@@ -105,41 +89,6 @@ double in_mebibytes(std::size_t bytes) {
 
 }  // namespace
 
-void ViewPanel::note(const SessionView& view) {
-  if (view.stage != SessionView::Stage::kReady) return;
-  if (view.step < noted_step_ || view.built != noted_world_) history_.clear();
-  noted_world_ = view.built;
-  noted_step_ = view.step;
-  history_.push_back(view.energies);
-  if (history_.size() > kHistory) history_.pop_front();
-}
-
-/// All curves share one scale, so that one sees energy move from one form to another.
-void ViewPanel::draw_plot() const {
-  std::array<double, 2> range = {0, 0};
-  for (const Energies& energies : history_) {
-    for (const Curve& curve : kCurves) {
-      const double value = curve.value(energies);
-      if (std::isfinite(value)) range = {std::min(range[0], value), std::max(range[1], value)};
-    }
-  }
-  if (!(range[1] > range[0])) range[1] = range[0] + 1;
-  const ImVec2 size = {ImGui::GetContentRegionAvail().x, 10 * ImGui::GetFontSize()};
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImDrawList* canvas = ImGui::GetWindowDrawList();
-  canvas->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, IM_COL32(0, 0, 0, 110), 4);
-  const float zero = corner.y + size.y * static_cast<float>(range[1] / (range[1] - range[0]));
-  canvas->AddLine({corner.x, zero}, {corner.x + size.x, zero}, IM_COL32(255, 255, 255, 60));
-  canvas->PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, true);
-  for (const Curve& curve : kCurves) draw_curve(history_, curve, corner, size, range);
-  canvas->PopClipRect();
-  ImGui::Dummy(size);
-  for (const Curve& curve : kCurves) {
-    const ImVec4 color = ImGui::ColorConvertU32ToFloat4(curve.color);
-    ImGui::TextColored(color, "%-10s %12.5g J", curve.name, curve.value(history_.back()));
-  }
-}
-
 void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double picture_ms) {
   ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize({kPanelWidth * ImGui::GetFontSize(), 0}, ImGuiCond_FirstUseEver);
@@ -155,13 +104,15 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double 
   ImGui::Text("time     %10.3f s, speed %g", view.time, view.speed);
   ImGui::Text("step     %10.3f ms", view.step_ms);
   ImGui::Text("pictures %10.1f /s", picture_ms > 0 ? 1000 / picture_ms : 0.0);
-  if (!history_.empty()) draw_plot();
+  plot_.build(view, input, boxes_);
+  build_insight(view, input, boxes_);
   if (!view.held.empty()) ImGui::Text("holding '%s'", view.held.c_str());
   const std::string hint(input.hint());
   if (!hint.empty()) write_wrapped(hint, {1, 0.9F, 0.5F, 1});
   if (view.said) write_wrapped(view.said->text, view.said->done ? ImVec4{0.7F, 0.85F, 1, 1} : kWarningColor);
   if (!view.problem.empty()) write_wrapped(view.problem, kWarningColor);
   build_messages(view);
+  build_troubles(view);
   ImGui::TextDisabled("keys: ? or F1");
   ImGui::End();
 }

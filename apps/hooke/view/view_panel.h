@@ -2,13 +2,13 @@
 
 #include "hooke/session/session.h"
 #include "hooke/view/inspector.h"
+#include "hooke/view/plot_panel.h"
 #include "hooke/view/view_input.h"
 #include "hooke/view/widget_boxes.h"
 
-#include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
+#include <string>
 
 namespace hooke::app {
 
@@ -16,23 +16,20 @@ namespace hooke::app {
 /// commands.
 class ViewPanel {
  public:
-  /// Notes a new view, for the plot of energies.
-  void note(const SessionView& view);
   /// Builds all panels for this picture. `picture_ms` is the time that a picture takes.
   void build(const SessionView& view, ViewInput& input, double picture_ms);
 
+  /// Name of what is plotted.
+  [[nodiscard]] const std::string& plotted() const { return plot_.chosen(); }
   /// Where the parts of the panels were in the last picture.
   [[nodiscard]] const WidgetBoxes& boxes() const { return boxes_; }
 
  private:
   void build_figures(const SessionView& view, ViewInput& input, double picture_ms);
   void build_timeline(const SessionView& view, ViewInput& input);
-  void draw_plot() const;
 
-  std::deque<Energies> history_;
-  std::uint64_t noted_step_ = 0;
-  std::uint64_t noted_world_ = 0;             ///< SessionView::built of the history.
   std::optional<std::uint64_t> wanted_step_;  ///< While the slider is dragged.
+  PlotPanel plot_;
   Inspector inspector_;
   WidgetBoxes boxes_;
 };

@@ -1,5 +1,6 @@
 #include "hooke/view/view_window.h"
 
+#include "hooke/drawing/insight_drawing.h"
 #include "hooke/drawing/scene_drawing.h"
 #include "hooke/view/eye.h"
 #include "hooke/view/view_input.h"
@@ -143,12 +144,23 @@ std::optional<Key> key_of(int key, int modifiers) {
       return Key::kPin;
     case GLFW_KEY_H:
       return Key::kTie;
+    case GLFW_KEY_C:
+      return Key::kCut;
     case GLFW_KEY_DELETE:
       return Key::kRemove;
     case GLFW_KEY_U:
       return Key::kUndo;
     case GLFW_KEY_I:
       return Key::kInspector;
+    case GLFW_KEY_1:
+    case GLFW_KEY_2:
+    case GLFW_KEY_3:
+    case GLFW_KEY_4:
+    case GLFW_KEY_5:
+    case GLFW_KEY_6:
+    case GLFW_KEY_7:
+    case GLFW_KEY_8:
+      return static_cast<Key>(static_cast<int>(Key::kContacts) + key - GLFW_KEY_1);
     case GLFW_KEY_F5:
       return Key::kReload;
     case GLFW_KEY_F1:
@@ -244,7 +256,6 @@ void take_view(Window& window) {
     window.warned = 0;
   }
   if (!before || before->opened != view.opened) window.has_camera = false;
-  window.panel.note(view);
   if (view.picture && !(before && before->picture == view.picture))
     window.drawing.record(*view.picture, view.step_seconds);
   for (; window.warned < view.warnings.size(); ++window.warned)
@@ -257,6 +268,12 @@ double blend_of(const SessionView& view) {
   return std::min(1.0, milliseconds_since(view.made) / 1000 * view.speed / view.step_seconds);
 }
 
+Eye present_eye(const Window& window) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return eye_of(window.camera, window.drawing.origin(), static_cast<double>(size.x),
+                static_cast<double>(size.y));
+}
+
 void fill_list(Window& window, int height_px) {
   const SessionView& view = *window.view;
   window.list = {};
@@ -266,14 +283,13 @@ void fill_list(Window& window, int height_px) {
   if (!window.has_camera) window.camera = render::make_orbit_camera(window.list.camera);
   window.has_camera = true;
   window.list.camera = render::camera_of(window.camera);
+  const auto half_height = static_cast<float>(present_eye(window).half_height);
+  if (view.insight) {
+    add_insight(*view.insight, window.drawing.origin(), 2 * half_height / static_cast<float>(height_px),
+                window.list);
+  }
   for (const std::string& line : window.drawing.take_warnings())
     std::fprintf(stderr, "warning: %s\n", line.c_str());
-}
-
-Eye present_eye(const Window& window) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  return eye_of(window.camera, window.drawing.origin(), static_cast<double>(size.x),
-                static_cast<double>(size.y));
 }
 
 void handle_input(Window& window, GLFWwindow* handle) {
@@ -309,10 +325,35 @@ void mark_selected(const Window& window) {
   canvas->AddText({center.x + 1.3F * radius, center.y - 1.6F * radius}, kColor, view.selected.c_str());
 }
 
+/// Draws the line of a cut while the mouse draws it.
+void draw_cut(const Window& window) {
+  const auto line = window.input.cut_line();
+  if (!line) return;
+  const auto at = [](std::array<double, 2> pixel) {
+    return ImVec2{static_cast<float>(pixel[0]), static_cast<float>(pixel[1])};
+  };
+  ImGui::GetBackgroundDrawList()->AddLine(at((*line)[0]), at((*line)[1]), IM_COL32(255, 80, 60, 255), 2);
+}
+
+/// Writes the numbers of a debug picture beside what they are of.
+void write_insight(const Window& window) {
+  if (!window.view->insight || !window.has_camera) return;
+  ImDrawList* canvas = ImGui::GetBackgroundDrawList();
+  for (const Insight::Text& text : window.view->insight->texts) {
+    const auto pixel = pixel_of(present_eye(window), text.place);
+    if (!pixel) continue;
+    const ImVec2 at = {static_cast<float>((*pixel)[0]) + 5, static_cast<float>((*pixel)[1]) - 5};
+    canvas->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 200), text.text.c_str());
+    canvas->AddText(at, ImGui::ColorConvertFloat4ToU32({text.color.r, text.color.g, text.color.b, 1}),
+                    text.text.c_str());
+  }
+}
+
 void write_log(Window& window, const render::Context& context) {
   ++window.facts.picture;
   window.facts.posted = window.input.posted();
   window.facts.boxes = window.panel.boxes();
+  window.facts.plot = window.panel.plotted();
   window.facts.font_px = ImGui::GetFontSize();
   window.facts.help = window.input.shows_help();
   window.facts.gl_error = context.take_error();
@@ -327,6 +368,8 @@ Result<void> draw_picture(Window& window, render::Renderer& renderer, const rend
   take_view(window);
   handle_input(window, context.window());
   mark_selected(window);
+  write_insight(window);
+  draw_cut(window);
   window.panel.build(*window.view, window.input, window.picture_ms);
   ImGui::Render();
   // A minimized window has no pixels.
