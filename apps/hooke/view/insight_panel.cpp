@@ -66,8 +66,8 @@ void build_insight(const SessionView& view, ViewInput& input, WidgetBoxes& boxes
   if (!ImGui::CollapsingHeader("insight (keys 1 to 8)", ImGuiTreeNodeFlags_DefaultOpen)) return;
   int column = 0;
   for (const ViewInput::InsightChoice& choice : ViewInput::insight_choices()) {
-    if (column > 0) ImGui::SameLine(static_cast<float>(column) * 5.6F * ImGui::GetFontSize());
-    column = (column + 1) % 4;
+    if (column > 0) ImGui::SameLine(static_cast<float>(column) * 7.2F * ImGui::GetFontSize());
+    column = (column + 1) % 3;
     bool shown = input.insight().*choice.shown;
     if (ImGui::Checkbox(choice.name, &shown)) input.key(choice.key);
     note_box(boxes, std::string("show ") + choice.name);
