@@ -15,7 +15,18 @@ namespace hooke::app {
 namespace {
 
 /// These are kinds of trouble; those of StepReport come after them, in the order of kRefusedCounts.
-enum Kind : int { kStretch, kSlack, kGapAtStart, kGap, kOverlap, kTooStiff, kCells, kLostParts, kFirstCount };
+enum Kind : int {
+  kStretch,
+  kSlack,
+  kGapAtStart,
+  kGap,
+  kOverlap,
+  kTooStiff,
+  kCells,
+  kLostParts,
+  kCrossed,
+  kFirstCount
+};
 
 constexpr double kBeyondLimit = 1.1;  ///< Stretch over the declared limit from which on it is reported.
 constexpr double kOpen = 0.01;        ///< Gap of a hook that is reported [m].
@@ -29,6 +40,7 @@ constexpr double kFarStretched = 0.02;  ///< and stretches by this share.
 constexpr double kHardlyAny = 2;        ///< Share of extra bending beyond which the estimate gives no number.
 constexpr double kFarOff = 1e-3;        ///< Error of rows that were refused from which on it is reported [m].
 constexpr double kLost = 0.05;          ///< Share of a mesh's volume that its cells do not have.
+constexpr int kCrossedFirst = 1000;     ///< Kinds of crossings with one other object, by its order.
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
 constexpr std::int32_t kMostSubsteps = 64;  ///< Largest number that a scene may have.
 
@@ -69,6 +81,9 @@ constexpr std::array kRefusedCounts = {
     RefusedCount{&StepReport::surfaces_touching, "surfaces_touching",
                  "parts of surfaces touched or crossed when they were looked at, and may cross",
                  "a gap between cloths and solids where the scene begins"},
+    RefusedCount{&StepReport::surfaces_crossing, "surfaces_crossing",
+                 "edges of cloths, solids or ropes went through others",
+                 "places at which they do not cross at the start"},
 };
 
 double in_double(Real value) {
@@ -264,6 +279,62 @@ void RunWatch::take_new_objects(const Simulation& simulation) {
     look_at_start(simulation, now.back());
   }
   watched_ = std::move(now);
+  look_at_crossings(simulation.world());
+}
+
+/// Whether a deformable of a scene has this point.
+static bool has_point(const SceneObject& object, PointRef p) {
+  const auto is = [&](auto id) { return id.slot == p.slot && id.generation == p.generation; };
+  switch (p.kind) {
+    case PointRef::Kind::kParticles:
+      return object.kind == SceneObject::Kind::kParticles && is(object.particles);
+    case PointRef::Kind::kRope:
+      return object.kind == SceneObject::Kind::kRope && is(object.rope);
+    case PointRef::Kind::kCloth:
+      return object.kind == SceneObject::Kind::kCloth && is(object.cloth);
+    case PointRef::Kind::kSolid:
+      return object.kind == SceneObject::Kind::kSolid && is(object.solid);
+    case PointRef::Kind::kNone:
+      break;
+  }
+  return false;
+}
+
+/// Tells whether two names are of copies of one object of a scene: "flag[0]" and "flag[63]".
+static bool are_copies(const std::string& a, const std::string& b) {
+  const std::size_t end = a.rfind('[');
+  return end != std::string::npos && b.rfind('[') == end && a.compare(0, end, b, 0, end) == 0;
+}
+
+void RunWatch::look_at_crossings(const World& world) {
+  const auto watched_of = [&](const auto& is) -> const Watched* {
+    const auto found = std::find_if(watched_.begin(), watched_.end(), is);
+    return found == watched_.end() ? nullptr : &*found;
+  };
+  for (const Crossing& crossing : world.crossings()) {
+    const Watched* a = watched_of([&](const Watched& one) { return has_point(one.object, crossing.a); });
+    const Watched* b = watched_of([&](const Watched& one) {
+      if (!crossing.body) return has_point(one.object, crossing.b);
+      return one.object.kind == SceneObject::Kind::kBody && one.object.body == crossing.body;
+    });
+    if (a == nullptr || b == nullptr) continue;
+    const std::string other = a == b ? std::string("itself") : "'" + b->object.name + "'";
+    const std::string place =
+        text_of("about (%.3g, %.3g, %.3g)", crossing.place.x, crossing.place.y, crossing.place.z);
+    // One warning for each other object, but one for all copies of the object itself.
+    const bool is_copy = a != b && are_copies(a->object.name, b->object.name);
+    const int kind =
+        is_copy || a == b ? static_cast<int>(kCrossed) : kCrossedFirst + static_cast<int>(b->order);
+    note(a->order, kind, crossing.pairs,
+         {.object = a->object.name,
+          .what = crossing.inside
+                      ? "begins with " + other + " inside, " + place
+                      : "begins crossed with " + other + text_of(" in %u places, ", crossing.pairs) + place,
+          .worst = static_cast<double>(crossing.pairs),
+          .limit = 0,
+          .time = world.time(),
+          .cure = "places at which they do not cross"});
+  }
 }
 
 /// Returns the springs along the edges of a cloth, which have its limit; of a grid, those of its cells.
@@ -501,12 +572,6 @@ void RunWatch::look(const Simulation& simulation, const StepReport& report) {
   next_overlaps_ = world.time() + kOverlapInterval;
   look_at_overlaps(world);
   for (const Watched& watched : watched_) look_at_softness(simulation, watched);
-}
-
-/// Tells whether two names are of copies of one object of a scene: "flag[0]" and "flag[63]".
-static bool are_copies(const std::string& a, const std::string& b) {
-  const std::size_t end = a.rfind('[');
-  return end != std::string::npos && b.rfind('[') == end && a.compare(0, end, b, 0, end) == 0;
 }
 
 std::vector<RunWarning> RunWatch::warnings() const {

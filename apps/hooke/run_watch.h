@@ -88,6 +88,7 @@ class RunWatch {
   void look_at_softness(const Simulation& simulation, const Watched& watched);
   void look_at_gap(const World& world, Watched& watched);
   void look_at_overlaps(const World& world);
+  void look_at_crossings(const World& world);
   void look_at_report(const World& world, const StepReport& report);
   /// Returns the rigid rope that is farthest off its length, or null.
   [[nodiscard]] const Watched* least_rigid_rope(const World& world) const;

@@ -430,6 +430,11 @@ struct RopeDesc {
   Real repulsion_strength = Real(0);
   Real repulsion_range = Real(0.01);  ///< Range r of the repulsion [m], positive.
   ContactDesc contact = {};           ///< Surface of the rope; only its friction counts.
+  /// Whether Events lists the begins and ends of its contacts with bodies, deformables and itself.
+  bool reports_contacts = false;
+  /// Speed above which Events lists what meets it [m/s], not negative; nothing by default. Of two the lower
+  /// speed counts.
+  Real hit_speed = kRigid;
 };
 
 /// A surface of point masses: a grid of `columns` x `rows` points, or the triangles of a mesh.
@@ -456,9 +461,9 @@ struct ClothDesc {
   Vec3 row_direction = {Real(0), Real(-1), Real(0)};  ///< Direction in which rows count; not along the other.
   Real width = Real(1);                               ///< Distance of the first and last column [m].
   Real height = Real(1);                              ///< Distance of the first and last row [m].
-  MeshId mesh = {};                                   ///< Replaces the grid: point i is vertex i of the mesh.
-  DVec3 position = {};                                ///< Origin of the mesh's frame [m].
-  Quat rotation = {};                                 ///< Rotation of the mesh's frame.
+  MeshId mesh = {};     ///< Replaces the grid: point i is vertex i. Of equal triangles the first one counts.
+  DVec3 position = {};  ///< Origin of the mesh's frame [m].
+  Quat rotation = {};   ///< Rotation of the mesh's frame.
 
   Real areal_density = Real(0.2);  ///< Mass per area [kg/m^2], positive; points have their share of area.
   std::optional<Real> total_mass = {};  ///< Mass of the cloth [kg]: replaces areal_density.
@@ -514,6 +519,11 @@ struct ClothDesc {
   bool self_contact = false;
   /// Which other cloths and solids it touches; all by default. Bodies are not asked.
   FilterDesc filter = {};
+  /// Whether Events lists the begins and ends of its contacts with bodies, deformables and itself.
+  bool reports_contacts = false;
+  /// Speed above which Events lists what meets it [m/s], not negative; nothing by default. Of two the lower
+  /// speed counts.
+  Real hit_speed = kRigid;
 };
 
 /// A soft solid: a box of cells, the inside of a closed mesh, or tetrahedra as given.
@@ -597,6 +607,11 @@ struct SolidDesc {
   bool self_contact = false;
   /// Which other cloths and solids it touches; all by default. Bodies are not asked.
   FilterDesc filter = {};
+  /// Whether Events lists the begins and ends of its contacts with bodies, deformables and itself.
+  bool reports_contacts = false;
+  /// Speed above which Events lists what meets it [m/s], not negative; nothing by default. Of two the lower
+  /// speed counts.
+  Real hit_speed = kRigid;
 };
 
 /// A damped Hooke spring between two points of one object. With x = x_a - x_b, u = x / |x| and v the velocity
@@ -643,6 +658,11 @@ struct ParticlesDesc {
   std::vector<PinDesc> pins = {};                           ///< Particles that are held.
   std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for particles or places.
   ContactDesc contact = {};  ///< Surface of the particles; only its friction counts.
+  /// Whether Events lists the begins and ends of its contacts with bodies, deformables and itself.
+  bool reports_contacts = false;
+  /// Speed above which Events lists what meets it [m/s], not negative; nothing by default. Of two the lower
+  /// speed counts.
+  Real hit_speed = kRigid;
 };
 
 /// A force on every particle and on every body that forces move. On bodies it acts at the center of mass;

@@ -7,8 +7,8 @@
 #include <vector>
 
 /// \file
-/// What happened in a step. Bodies take part in it if their BodyDesc asks for it: reports_contacts,
-/// hit_speed, sensor.
+/// What happened in a step. Bodies and deformables take part in it if their descriptions ask for it:
+/// reports_contacts, hit_speed, sensor.
 
 namespace hooke {
 
@@ -30,6 +30,28 @@ struct HitEvent {
   /// Speed along the normal at which they came together [m/s].
   Real speed = Real(0);
   /// Impulse along the normal [N s]: the largest of any substep, plus what bouncing added.
+  Real impulse = Real(0);
+};
+
+/// A deformable that began or ceased to touch a body, another deformable or itself, anywhere.
+struct DeformableContactEvent {
+  PointRef a = {};   ///< The deformable, as its point 0; of two the first in the order of Events.
+  PointRef b = {};   ///< The other deformable likewise, or `a` itself; empty if it is a body.
+  BodyId body = {};  ///< The body; null if it is a deformable.
+
+  friend constexpr bool operator==(const DeformableContactEvent&, const DeformableContactEvent&) = default;
+};
+
+/// A deformable that met a body, another deformable or itself at a speed. Two objects have one in a step, of
+/// the place where they met fastest.
+struct DeformableHitEvent {
+  PointRef a = {};       ///< As in DeformableContactEvent.
+  PointRef b = {};       ///< Likewise.
+  BodyId body = {};      ///< Likewise.
+  DVec3 point = {};      ///< Where they met, in the world [m].
+  Vec3 normal = {};      ///< Direction from a to the other, of unit length.
+  Real speed = Real(0);  ///< Speed along the normal at which they came together there [m/s].
+  /// Impulse along the normals of all places where they touched [N s]: the largest of any particle substep.
   Real impulse = Real(0);
 };
 
@@ -107,11 +129,17 @@ struct Events {
   std::vector<ContactEvent> contact_begins;
   /// Parts that ceased to touch; one body at least has reports_contacts.
   std::vector<ContactEvent> contact_ends;
-  std::vector<HitEvent> hits;              ///< Parts that met faster than hit_speed.
-  std::vector<SensorEvent> sensor_enters;  ///< Bodies that came into a sensor.
-  std::vector<SensorEvent> sensor_leaves;  ///< Bodies that left a sensor.
-  std::vector<BodyId> fell_asleep;         ///< Bodies that fell asleep.
-  std::vector<BodyId> woke_up;             ///< Bodies that woke up.
+  std::vector<HitEvent> hits;  ///< Parts that met faster than hit_speed.
+  /// Deformables that began to touch something; one of the two has reports_contacts. The three lists are in
+  /// the order of a's kind, then of its creation, then of the other deformable or the body likewise.
+  std::vector<DeformableContactEvent> deformable_begins;
+  /// Deformables that ceased to touch something; one of the two has reports_contacts.
+  std::vector<DeformableContactEvent> deformable_ends;
+  std::vector<DeformableHitEvent> deformable_hits;  ///< What met faster than the lower hit_speed of the two.
+  std::vector<SensorEvent> sensor_enters;           ///< Bodies that came into a sensor.
+  std::vector<SensorEvent> sensor_leaves;           ///< Bodies that left a sensor.
+  std::vector<BodyId> fell_asleep;                  ///< Bodies that fell asleep.
+  std::vector<BodyId> woke_up;                      ///< Bodies that woke up.
   std::vector<BreakEvent> breaks;  ///< Hooks that broke, in order of time, then of the hooks' creation.
   /// Segments of ropes that broke, in order of time, then of the ropes' creation, then along the rope.
   std::vector<RopeBreakEvent> rope_breaks;

@@ -84,6 +84,30 @@ struct BodyContact {
   Vec3 friction_force = {};     ///< Friction on b [N]; points with one normal share it evenly.
 };
 
+/// What a deformable and something that it touched gave each other in the last step, over all points where
+/// they touched.
+struct DeformableContact {
+  PointRef a = {};           ///< The deformable, as its point 0; of two the first in the order of Events.
+  PointRef b = {};           ///< The other deformable likewise, or `a` itself; empty if it is a body.
+  BodyId body = {};          ///< The body; null if it is a deformable.
+  std::uint32_t points = 0;  ///< Points, edges and faces that pressed in the last particle substep.
+  DVec3 point = {};          ///< Mean of the places where they pressed, by impulse [m].
+  /// Force on a, friction included, as a mean over the step [N]; the other has the opposite. 0 from itself.
+  Vec3 force = {};
+  Real normal_force = Real(0);  ///< Sum of the forces along the normals, likewise [N].
+};
+
+/// Two objects that go through each other, one of them a deformable.
+struct Crossing {
+  PointRef a = {};   ///< The deformable, as its point 0.
+  PointRef b = {};   ///< The other deformable likewise, or `a` itself; empty if it is a body.
+  BodyId body = {};  ///< The body; null if it is a deformable.
+  /// Edges that go through triangles; of a body, faces and segments that lie more than halfway in it.
+  std::uint32_t pairs = 0;
+  bool inside = false;  ///< The body lies within the solid without touching its surface; `pairs` is 0.
+  DVec3 place = {};     ///< Middle of the crossings, or of the body that lies inside [m].
+};
+
 /// What a hook did to b, and the opposite to a, as a mean over the last step.
 struct HookForce {
   Vec3 force = {};   ///< Force on b [N].
@@ -159,9 +183,16 @@ struct StepReport {
   /// surfaces from crossing: they jam there. Points and bodies count, too, that went on as one because
   /// nothing else kept the body from passing.
   std::uint32_t points_held_back = 0;
+  /// Those of these points that surfaces held back, over all points of surfaces that were near others, times
+  /// particle substeps. [0, 1]
+  double held_back_share = 0;
   /// Pairs of parts of surfaces that touched or crossed when they were looked at. Nothing keeps them from
   /// crossing until they are apart.
   std::uint32_t surfaces_touching = 0;
+  /// Edges of surfaces that went through triangles when they were looked at last, as where objects were added
+  /// or placed so: World::crossings says which. Where the crossings cut a part off a surface, the smaller
+  /// part is drawn back through the other one; all else keeps apart.
+  std::uint32_t surfaces_crossing = 0;
   std::uint32_t surface_searches = 0;  ///< How often contacts of surfaces were found anew, over all groups.
   /// Pairs of vertices and faces or of edges that might have met after contacts of surfaces were found last.
   std::uint32_t surface_pairs = 0;
@@ -198,7 +229,10 @@ struct Measurement {
   double largest_stretch = 0;   ///< Largest |length / rest length - 1| of rope segments and stretch springs.
   double mean_stretch = 0;      ///< Mean of the same.
   double largest_penetration = 0;  ///< Deepest overlap of a particle with a shape, or of two bodies [m].
-  double largest_gap = 0;          ///< Largest World::hook_gap [m].
+  /// Largest amount by which parts of deformables are nearer to each other, or to others of the same one,
+  /// than they keep there [m], of contacts found in the last step.
+  double largest_surface_overlap = 0;
+  double largest_gap = 0;  ///< Largest World::hook_gap [m].
 };
 
 /// Everything that changes with time, and everything that was added, as it was: see World::restore. Copies
@@ -400,6 +434,21 @@ class World {
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
   /// Lists where one body touched others in the last step. It looks at all contacts.
   [[nodiscard]] std::vector<BodyContact> body_contacts(BodyId id) const;
+  ///@{
+  /// Lists what deformables touched in the last step, of pairs of which one has reports_contacts or a
+  /// hit_speed: all, or those of the object of a point, or of a body. In the order of Events; empty after
+  /// restore().
+  [[nodiscard]] std::vector<DeformableContact> deformable_contacts() const;
+  [[nodiscard]] std::vector<DeformableContact> deformable_contacts(PointRef of) const;
+  [[nodiscard]] std::vector<DeformableContact> deformable_contacts(BodyId id) const;
+  ///@}
+  /// Force of these contacts on one point of a deformable, as a mean over the last step [N]; zero after
+  /// restore(), and after an object was removed or changed.
+  [[nodiscard]] Vec3 contact_force(PointRef point) const;
+  /// Lists deformables that go through others, through themselves or through bodies now, by what they touch:
+  /// objects that do not touch each other by their filters, or of which one does not touch itself, do not
+  /// count. It looks at every object.
+  [[nodiscard]] std::vector<Crossing> crossings() const;
   /// The events of the last step, valid until the next one; empty after restore().
   [[nodiscard]] const Events& events() const;
   /// Lists the bodies that were in a sensor at the end of the last step, in order of creation.

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace hooke::build {
 
@@ -77,7 +78,9 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
       .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
       .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
       .velocity("velocity", desc.velocity)
-      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100)
+      .require(desc.hit_speed >= Real(0), "hit_speed", static_cast<double>(desc.hit_speed),
+               "must not be negative");
   if (desc.strength) {
     checks.positive("strength", static_cast<double>(*desc.strength))
         .require(!std::isinf(desc.stretch_stiffness), "strength",
@@ -118,12 +121,32 @@ Surface make_grid(const ClothDesc& desc) {
   return s;
 }
 
+/// Triangles without those that join the same three vertices as one before them.
+std::vector<Triangle> distinct(const std::vector<Triangle>& triangles) {
+  std::vector<std::pair<Triangle, std::size_t>> sorted;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    Triangle corners = triangles[i];
+    std::sort(corners.begin(), corners.end());
+    sorted.emplace_back(corners, i);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint8_t> is_first(triangles.size(), 0);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (i == 0 || sorted[i].first != sorted[i - 1].first) is_first[sorted[i].second] = 1;
+  }
+  std::vector<Triangle> kept;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (is_first[i] != 0) kept.push_back(triangles[i]);
+  }
+  return kept;
+}
+
 Surface surface_of_mesh(const ClothDesc& desc, const MeshDesc& mesh) {
   Surface s;
   const Quat rotation = normalize(desc.rotation);
   for (const Vec3& p : mesh.positions)
     s.points.push_back(desc.position + vector_cast<double>(rotate(rotation, p)));
-  s.triangles = mesh.triangles;
+  s.triangles = distinct(mesh.triangles);
   return s;
 }
 
@@ -512,6 +535,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.gas_volume = filled.gas_volume;
   object.surface = contact.value();
   object.friction = desc.contact.friction;
+  report_contacts(desc.reports_contacts, desc.hit_speed, tables);
   object.yield_angle = desc.yield_angle;
   object.tear_strain = tear_strain_of(desc);
   object.columns = static_cast<std::uint32_t>(surface.columns);

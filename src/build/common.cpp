@@ -105,6 +105,12 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   return tables.objects.back();
 }
 
+void report_contacts(bool contacts, Real hit_speed, state::Tables& tables) {
+  tables.objects.back().reports_contacts = contacts;
+  tables.objects.back().hit_speed = hit_speed;
+  tables.any_deformable_reports = tables.any_deformable_reports || contacts || std::isfinite(hit_speed);
+}
+
 void append_spring(const SpringRow& spring, state::Tables& tables) {
   state::Deformable& object = tables.objects.back();
   state::Springs& springs = tables.springs;

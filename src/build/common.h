@@ -59,6 +59,9 @@ struct SpringRow {
 /// Appends a spring to the last object.
 void append_spring(const SpringRow& spring, state::Tables& tables);
 
+/// Says of the object that was appended last which events it asks for.
+void report_contacts(bool contacts, Real hit_speed, state::Tables& tables);
+
 /// Row of a point of `object` in the table of particles.
 [[nodiscard]] inline std::uint32_t row_of(const state::Tables& tables, const state::Deformable& object,
                                           std::uint32_t point) {

@@ -21,7 +21,9 @@ Checks check(const ParticlesDesc& desc) {
       .in_range("particles", static_cast<double>(count), 1, static_cast<double>(kMostParticles))
       .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
       .up_to("drag_coefficient", static_cast<double>(desc.drag_coefficient), 1e6)
-      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100)
+      .require(desc.hit_speed >= Real(0), "hit_speed", static_cast<double>(desc.hit_speed),
+               "must not be negative");
   for (std::size_t i = 0; i < count && checks.good(); ++i) {
     const ParticleDesc& p = desc.particles[i];
     const std::string where = indexed("particles", i);
@@ -81,6 +83,7 @@ Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables) {
   }
   state::Deformable& object = append_object(PointRef::Kind::kParticles, points, desc.pins, tables);
   object.friction = desc.contact.friction;
+  report_contacts(desc.reports_contacts, desc.hit_speed, tables);
   for (const SpringDesc& s : desc.springs) {
     const double distance = length(desc.particles[s.a].position - desc.particles[s.b].position);
     append_spring({.a = s.a,

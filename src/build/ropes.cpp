@@ -32,7 +32,9 @@ Checks check(const RopeDesc& desc) {
       .size("repulsion_range", static_cast<double>(desc.repulsion_range))
       .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
       .velocity("velocity", desc.velocity)
-      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100)
+      .require(desc.hit_speed >= Real(0), "hit_speed", static_cast<double>(desc.hit_speed),
+               "must not be negative");
   if (desc.axial_stiffness) checks.stiffness("axial_stiffness", static_cast<double>(*desc.axial_stiffness));
   if (desc.strength) checks.positive("strength", static_cast<double>(*desc.strength));
   if (desc.young_modulus)
@@ -150,6 +152,7 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
 
   state::Deformable& object = append_object(PointRef::Kind::kRope, points, desc.pins, tables);
   object.friction = desc.contact.friction;
+  report_contacts(desc.reports_contacts, desc.hit_speed, tables);
   object.strength = desc.strength.value_or(kRigid);
   object.touches_ropes = desc.touches_ropes;
   object.touches_surfaces = desc.touches_surfaces;

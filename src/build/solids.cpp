@@ -64,7 +64,9 @@ Checks check(const SolidDesc& desc) {
       .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
       .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
       .velocity("velocity", desc.velocity)
-      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100)
+      .require(desc.hit_speed >= Real(0), "hit_speed", static_cast<double>(desc.hit_speed),
+               "must not be negative");
   if (desc.total_mass) checks.mass("total_mass", static_cast<double>(*desc.total_mass));
   if (desc.strength) {
     checks.positive("strength", static_cast<double>(*desc.strength))
@@ -417,6 +419,7 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   state::Deformable& object = append_object(PointRef::Kind::kSolid, points, desc.pins, tables);
   object.rest_shape = std::move(rest_shape);
   object.friction = desc.contact.friction;
+  report_contacts(desc.reports_contacts, desc.hit_speed, tables);
   object.surface = contact.value();
   object.yield_stress = desc.yield_stress;
   object.tear_stress = desc.strength.value_or(kRigid);

@@ -72,6 +72,8 @@ struct Surface {
   Real radius = Real(0);         ///< Distance that it keeps, of the sum of two [m].
   Real self_distance = Real(0);  ///< Distance that it keeps from itself [m].
   Real edge = Real(0);           ///< Mean length of an edge at rest [m].
+  /// It may go through others or itself: it is new, was placed by hand, or went through something a step ago.
+  bool may_cross = true;
 };
 
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
@@ -119,7 +121,9 @@ struct Deformable {
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);
-  Surface surface = {};      ///< How it touches other deformables and itself.
+  Surface surface = {};  ///< How it touches other deformables and itself.
+  bool reports_contacts = false;
+  Real hit_speed = kRigid;   ///< Speed from which on what meets it is reported [m/s].
   bool points_drag = false;  ///< Some particle feels the air by itself: as a sphere, or by air friction.
 
   [[nodiscard]] bool feels_air() const {

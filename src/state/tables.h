@@ -54,11 +54,14 @@ struct Tables {
   bool any_reports = false;           ///< Some body was added that asks for contacts, hits or visitors.
   std::vector<ContactEvent> touches;  ///< Contacts of the last step, of bodies that ask for them; in order of
                                       ///< creation.
-  std::vector<SensorEvent> visits;    ///< Lists who is in which sensor; in order of creation.
-  std::vector<Hook> hooks;            ///< In order of creation.
-  std::vector<Yielding> yielding;     ///< Bodies that may become soft; in order of creation.
-  std::vector<HeldHook> held_hooks;   ///< Hooks of those that are soft.
-  std::uint64_t hook_revision = 0;    ///< Grows when hooks are added or removed or change their rows.
+  bool any_deformable_reports = false;  ///< Some deformable was added that asks for contacts or hits.
+  std::vector<DeformableContactEvent> deformable_touches;  ///< Contacts of deformables in the last step, of
+                                                           ///< those that ask for them; in order.
+  std::vector<SensorEvent> visits;           ///< Lists who is in which sensor; in order of creation.
+  std::vector<Hook> hooks;                   ///< In order of creation.
+  std::vector<Yielding> yielding;            ///< Bodies that may become soft; in order of creation.
+  std::vector<HeldHook> held_hooks;          ///< Hooks of those that are soft.
+  std::uint64_t hook_revision = 0;           ///< Grows when hooks are added or removed or change their rows.
   std::vector<std::uint32_t> moving_bodies;  ///< Rows of bodies that are not static, in ascending order.
   std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
   std::vector<Rows> free_colliders;          ///< Holes of the collider table.

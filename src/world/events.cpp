@@ -199,8 +199,9 @@ void note_closing_pairs(WorldData& world, Real dt) {
 void clear_events(Events& events) {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
   clear(events.contact_begins, events.contact_ends, events.hits, events.sensor_enters, events.sensor_leaves,
-        events.fell_asleep, events.woke_up, events.breaks, events.rope_breaks, events.tears,
-        events.solid_tears, events.yields, events.freezes);
+        events.fell_asleep, events.woke_up, events.deformable_begins, events.deformable_ends,
+        events.deformable_hits, events.breaks, events.rope_breaks, events.tears, events.solid_tears,
+        events.yields, events.freezes);
 }
 
 void gather_events(WorldData& world) {
@@ -209,6 +210,7 @@ void gather_events(WorldData& world) {
     gather_hits(world, world.last_step.events);
     gather_visits(world);
   }
+  gather_deformable_events(world);
   gather_sleep(world);
 }
 

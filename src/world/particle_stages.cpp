@@ -16,6 +16,7 @@
 #include "solver/surface/surface_contacts.h"
 #include "state/check_tables.h"
 #include "state/rope_chains.h"
+#include "world/events.h"
 #include "world/force_stages.h"
 
 #include <algorithm>
@@ -422,6 +423,7 @@ void move_particles(WorldData& world, Real h) {
   for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain,
              [&](Range rows) { solver::wide::move(h, rows, world.tables.particles); });
   solver::truncate_surfaces(*world.pool, h, world.frame.surfaces, world.tables);
+  add_touch_impulses(world, h);
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
     division.for_rows(0, static_cast<int>(group.yields.tetrahedra.size()), kYieldGrain, [&](Range rows) {
       solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra);

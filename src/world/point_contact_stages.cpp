@@ -17,6 +17,7 @@
 #include "solver/surface/surface_contacts.h"
 #include "solver/surface/surface_tuning.h"
 #include "state/check_contacts.h"
+#include "world/events.h"
 
 #include <vector>
 
@@ -61,6 +62,7 @@ collision::PassSubstep pass_substep(const WorldData& world, Real h) {
 }  // namespace
 
 void find_point_contacts(WorldData& world, double dt) {
+  begin_deformable_touches(world, dt);
   collision::find_contacts(dt, world.frame.particle_contacts, world.tables);
   remove_contacts_of_gaps(world.tables);
   collision::find_rope_contacts(*world.pool, static_cast<Real>(dt), world.frame.rope_contacts, world.tables);
@@ -81,6 +83,7 @@ void update_point_contacts(WorldData& world, Real h) {
   collision::update_rope_contacts(*world.pool, h, world.frame.rope_contacts, t);
   release_gaps(t);
   solver::find_contacts_before_solutions(*world.pool, h, world.frame.surfaces, t);
+  note_closing_deformables(world, h);
 }
 
 void solve_point_contacts(WorldData& world, Real h) {
@@ -130,10 +133,11 @@ void stop_body_passes(WorldData& world, Real h) {
   collision::BodyPassFinder& finder = world.frame.body_passes;
   collision::PassSubstep substep = pass_substep(world, h);
   for (int round = 0; round < solver::kPassRounds; ++round) {
-    if (!collision::sweep_body_passes(*world.pool, t, substep, finder)) return;
+    if (!collision::sweep_body_passes(*world.pool, t, substep, finder)) break;
     substep.first = false;
     solver::stop_passes(h, finder.passes, world.frame.backing_contacts, world.frame.body_contacts, t);
   }
+  if (!substep.first) add_pass_impulses(world, h, finder.passes);
 }
 
 void hold_back_passes(WorldData& world, Real h) {

@@ -10,6 +10,19 @@ namespace hooke::world {
 
 namespace {
 
+/// Share of the points of surfaces that were held back, over all that may touch and all substeps.
+double held_back_share(const WorldData& world, std::uint32_t held_back) {
+  const solver::SurfaceContacts& contacts = world.frame.surfaces;
+  if (held_back == 0 || !contacts.active) return 0;
+  double points = 0;
+  for (std::size_t i = 0; i < contacts.live_groups; ++i) {
+    for (const std::uint32_t mesh : contacts.groups[i].meshes)
+      points += contacts.surfaces.meshes[mesh].vertex_count;
+  }
+  const WorldDesc& desc = world.tables.desc;
+  return held_back / (points * desc.substeps * desc.particle_substeps);
+}
+
 void count_refused(WorldData& world, StepReport& report) {
   for (const solver::RopeSystem& rope_system : world.derived.rope_systems) {
     report.rope_solves += rope_system.solves;
@@ -20,9 +33,11 @@ void count_refused(WorldData& world, StepReport& report) {
   world.frame.surfaces.for_groups([&](const solver::SurfaceGroup& group) {
     report.points_held_back += group.counts.held_back;
     report.surfaces_touching += group.counts.uncertain;
+    report.surfaces_crossing += group.counts.crossings;
     report.surface_searches += group.counts.searches;
     report.surface_pairs += group.counts.pairs;
   });
+  report.held_back_share = held_back_share(world, report.points_held_back);
   report.points_held_back += std::exchange(world.frame.passes_held_back, 0);
   report.surfaces_touching += std::exchange(world.frame.passes_left, 0);
   report.cloths_unconverged = std::exchange(world.frame.cloths_unconverged, 0);

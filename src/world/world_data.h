@@ -63,6 +63,25 @@ struct StartOfBody {
   Vec3 torque = {};
 };
 
+/// What a deformable and something that it touches have given each other in the step so far.
+struct DeformableTouch {
+  std::uint32_t object = 0;  ///< Row of the deformable.
+  std::uint32_t other = 0;   ///< Row of the other deformable; of a body, its row with the highest bit set.
+  std::uint32_t points = 0;  ///< Places that pressed in the last particle substep.
+  bool meets = false;        ///< Some place is about to meet in this particle substep.
+  Real closing = Real(0);    ///< Fastest speed of such places [m/s].
+  Real speed = Real(0);      ///< Fastest speed at which they met in the step [m/s].
+  DVec3 met_at = {};         ///< Where that was [m].
+  Vec3 normal = {};          ///< Unit vector from the deformable to the other, there.
+  DVec3 closing_at = {};     ///< Where `closing` is [m].
+  Vec3 closing_normal = {};
+  DVec3 impulse = {};          ///< On the deformable [N s].
+  double normal_impulse = 0;   ///< Sum along the normals [N s].
+  double substep_impulse = 0;  ///< The same in this particle substep [N s].
+  double largest_impulse = 0;  ///< Largest of these [N s].
+  DVec3 weighted_place = {};   ///< Sum of places times their impulses, from the origin of the object.
+};
+
 /// What contacts did to a body of a coupled group, as the share of one particle substep.
 struct ContactShare {
   std::uint32_t body = 0;  ///< Row of the body.
@@ -118,9 +137,13 @@ struct Frame {
   std::vector<ClosingPair> closing_pairs;  ///< In order of their manifolds.
   std::vector<ContactEvent> contacts_now;  ///< Contacts of bodies that ask for events.
   std::vector<SensorEvent> visits_now;
-  base::DisjointSets islands;     ///< Sets of bodies that may fall asleep together.
-  std::vector<Real> island_rest;  ///< Time for which each island has been at rest, at its root [s].
-  std::vector<Vec3> pushes;       ///< By body row: force of all points of deformables that press on it [N].
+  std::vector<DeformableTouch> deformable_touches;  ///< Of deformables that ask for events.
+  std::vector<DeformableContactEvent> deformable_touches_now;
+  std::vector<Vec3> contact_impulses;  ///< By particle: of those contacts in the step so far [N s].
+  double step_length = 0;              ///< [s]
+  base::DisjointSets islands;          ///< Sets of bodies that may fall asleep together.
+  std::vector<Real> island_rest;       ///< Time for which each island has been at rest, at its root [s].
+  std::vector<Vec3> pushes;  ///< By body row: force of all points of deformables that press on it [N].
   std::vector<std::uint8_t> body_marks;  ///< By body: scratch of couple_articulations and share_out_contacts.
 
   // These members solve contacts of bodies.
@@ -207,6 +230,9 @@ struct Blows {
 struct LastStep {
   Events events;
   std::vector<HookId> broken_hooks;
+  std::vector<DeformableContact> deformable_contacts;
+  std::vector<Vec3> contact_forces;           ///< By particle [N].
+  std::uint64_t contact_forces_revision = 0;  ///< Revision of the tables to which these belong.
 };
 
 }  // namespace world

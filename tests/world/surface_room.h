@@ -116,6 +116,15 @@ inline ClothDesc sheet(int n, DVec3 at) {
   return desc;
 }
 
+/// A cube of jelly with `cells` cells along each edge.
+inline SolidDesc soft_cube(DVec3 at, Real size, int cells) {
+  SolidDesc desc;
+  desc.size = {size, size, size};
+  desc.cells = {cells, cells, cells};
+  desc.position = at;
+  return desc;
+}
+
 /// A pinned sheet of 1.2 by 0.3 m, whose columns go along `down`.
 inline ClothDesc ramp(DVec3 down, Real friction) {
   ClothDesc desc = sheet(2, {});

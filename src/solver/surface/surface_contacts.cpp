@@ -67,6 +67,16 @@ void place_vertices(SurfaceContacts& contacts, const SurfaceGroup& group) {
   });
 }
 
+/// Notes which objects are to be looked at in the next step.
+void note_crossings(const SurfaceContacts& contacts, state::Tables& tables) {
+  for (state::Deformable& object : tables.objects) object.surface.may_cross = false;
+  if (!contacts.active) return;
+  for (std::size_t i = 0; i < contacts.live_groups; ++i) {
+    for (const std::uint32_t mesh : contacts.groups[i].meshes)
+      tables.objects[contacts.surfaces.meshes[mesh].object].surface.may_cross = contacts.may_cross[mesh] != 0;
+  }
+}
+
 }  // namespace
 
 void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContacts& contacts) {
@@ -78,6 +88,9 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   });
   contacts.regroup = true;
   contacts.substeps_left = substeps;
+  contacts.may_cross.resize(contacts.surfaces.meshes.size());
+  for (std::size_t i = 0; i < contacts.may_cross.size(); ++i)
+    contacts.may_cross[i] = tables.objects[contacts.surfaces.meshes[i].object].surface.may_cross ? 1 : 0;
   if (!changed || !contacts.active) return;
   contacts.any_rope = std::any_of(contacts.surfaces.meshes.begin(), contacts.surfaces.meshes.end(),
                                   [](const SurfaceMesh& mesh) { return mesh.is_rope(); });
@@ -93,6 +106,9 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   contacts.velocity.assign(count, {});
   contacts.cage.assign(count, {});
   contacts.stays.assign(count, 0);
+  contacts.passed.assign(count, 0);
+  contacts.exact_position.resize(count);
+  contacts.crosses.assign(meshes, 0);
   contacts.load_share.assign(count, {});
   contacts.in_open_block.assign(count, 0);
   contacts.refreshed.assign(tables.objects.size(), 0);
@@ -101,6 +117,7 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
 
 void begin_surface_substep(const state::Tables& tables, SurfaceContacts& contacts) {
   if (!contacts.active) return;
+  if (contacts.keeps_spent_rows) contacts.for_groups([](SurfaceGroup& group) { group.spent_rows.clear(); });
   for (std::size_t i = 0; i < contacts.start.size(); ++i)
     contacts.start[i] = tables.particles.position[contacts.surfaces.particle[i]];
 }
@@ -147,19 +164,46 @@ bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContact
     any = true;
     for (const std::uint32_t mesh : group.meshes)
       contacts.refreshed[contacts.surfaces.meshes[mesh].object] = 1;
+    if (contacts.keeps_spent_rows && group.known) group.spent_rows = group.rows;
     find_group_contacts(workers, tables, h, contacts, group);
     solve_surface_rows(h, false, contacts, group, tables.particles);
   });
   return any;
 }
 
+Real largest_overlap(const state::Tables& tables, const SurfaceContacts& contacts) {
+  Real largest = Real(0);
+  if (!contacts.active || contacts.surfaces.revision != tables.revision) return largest;
+  for (std::size_t i = 0; i < contacts.live_groups; ++i) {
+    const SurfaceGroup& group = contacts.groups[i];
+    if (!group.known) continue;
+    const DVec3 origin = tables.objects[contacts.surfaces.meshes[group.meshes.front()].object].origin;
+    const auto place_of = [&](std::uint32_t vertex) {
+      const Vec3 shift =
+          vector_cast<Real>(tables.objects[contacts.surfaces.object_of(vertex)].origin - origin);
+      return tables.particles.position[contacts.surfaces.particle[vertex]].x + shift;
+    };
+    for (const SurfaceRowBlock& block : group.rows) {
+      for (int lane = 0; lane < block.count; ++lane) {
+        const Vec3 normal = {block.normal[0][lane], block.normal[1][lane], block.normal[2][lane]};
+        Real overlap = block.distance[lane];
+        for (std::size_t k = 0; k < 4; ++k)
+          overlap -= block.weight[k][lane] * dot(normal, place_of(block.record[k][lane] / 4));
+        largest = std::max(largest, overlap);
+      }
+    }
+  }
+  return largest;
+}
+
 void truncate_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables) {
-  if (!contacts.active) return;
-  for_groups(pool, contacts, [&](SurfaceGroup& group) {
-    truncate_group(h, contacts, group, tables.particles);
-    --group.substeps_left;
-  });
-  --contacts.substeps_left;
+  if (contacts.active) {
+    for_groups(pool, contacts, [&](SurfaceGroup& group) {
+      truncate_group(h, contacts, group, tables.particles);
+      --group.substeps_left;
+    });
+  }
+  if (--contacts.substeps_left == 0) note_crossings(contacts, tables);
 }
 
 }  // namespace hooke::solver

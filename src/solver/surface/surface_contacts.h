@@ -32,6 +32,10 @@ bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContact
 void find_contacts_before_solutions(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
                                     const state::Tables& tables);
 
+/// Largest amount by which parts of surfaces whose contacts the last step found are nearer now than the
+/// distance that they keep [m]; 0 if rows have changed since.
+[[nodiscard]] Real largest_overlap(const state::Tables& tables, const SurfaceContacts& contacts);
+
 /// Ends a particle substep, after everything else has moved particles: see truncate_group.
 void truncate_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables);
 

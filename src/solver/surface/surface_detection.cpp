@@ -233,13 +233,52 @@ class RowMaker {
     return share * distance_of(mesh_a, mesh_b);
   }
 
+  /// Begins with a pair of surfaces; of those that go through each other with their tangle, else null.
+  void begin_pair(const SurfaceTangle* tangle) {
+    mark_passed(0);
+    tangle_ = tangle;
+    mark_passed(1);
+    if (tangle == nullptr) return;
+    for (const SurfaceCrossing& crossing : tangle->crossings) add_way_back(crossing);
+  }
+
   void take(const SurfaceFound& found) {
+    if (tangle_ != nullptr && has_passed(found.vertex)) return;
     if ((found.flags & SurfaceFound::kUncertain) != 0 && !separate(found)) return;
     if ((found.flags & SurfaceFound::kReachable) != 0) add_pair(found);
     add_row(found);
   }
 
  private:
+  void mark_passed(std::uint8_t mark) {
+    if (tangle_ == nullptr) return;
+    for (const std::uint32_t vertex : tangle_->passed) c_.passed[vertex] = mark;
+  }
+
+  [[nodiscard]] bool has_passed(const std::array<std::uint32_t, 4>& vertex) const {
+    return std::any_of(vertex.begin(), vertex.end(), [&](std::uint32_t i) { return c_.passed[i] != 0; });
+  }
+
+  /// Draws the end of an edge that has come through a triangle back to the side of the other end.
+  void add_way_back(const SurfaceCrossing& crossing) {
+    const auto has_passed = [&](std::size_t end) { return c_.passed[crossing.end[end]] != 0; };
+    if (has_passed(0) == has_passed(1)) return;
+    const std::size_t back = has_passed(0) ? 0 : 1;
+    const auto& [a, b, c] = crossing.corner;
+    SurfaceRow row;
+    row.vertex = {crossing.end[back], a, b, c};
+    row.weight[0] = Real(1);
+    for (std::size_t k = 0; k < 3; ++k) row.weight[k + 1] = static_cast<Real>(-crossing.weight[k]);
+    const double side = crossing.front_end == back ? -1.0 : 1.0;
+    row.normal = vector_cast<Real>(side * crossing.normal);
+    const std::array<std::uint32_t, 2> pair = {c_.surfaces.mesh_of[row.vertex[0]], c_.surfaces.mesh_of[a]};
+    Real gap = Real(0);
+    for (std::size_t k = 0; k < 4; ++k) gap += row.weight[k] * dot(row.normal, x(row.vertex[k]));
+    const Real step = kWayBack * std::min(object(pair[0]).surface.edge, object(pair[1]).surface.edge);
+    row.distance = std::min(gap + step, kEdgeShare * distance_of(pair[0], pair[1]));
+    add_row(row, pair[0], pair[1]);
+  }
+
   [[nodiscard]] const state::Deformable& object(std::uint32_t mesh) const {
     return t_.objects[c_.surfaces.meshes[mesh].object];
   }
@@ -384,9 +423,9 @@ class RowMaker {
   }
 
   /// Whether both are solids, and one is stiff.
-  [[nodiscard]] bool belongs_to_solution(const SurfaceFound& found) const {
-    const std::uint32_t a = c_.surfaces.meshes[found.first_mesh].object;
-    const std::uint32_t b = c_.surfaces.meshes[found.second_mesh].object;
+  [[nodiscard]] bool belongs_to_solution(std::uint32_t first, std::uint32_t second) const {
+    const std::uint32_t a = c_.surfaces.meshes[first].object;
+    const std::uint32_t b = c_.surfaces.meshes[second].object;
     return (c_.stiff[a] | c_.stiff[b]) != 0 && t_.objects[a].tetrahedra.count > 0 &&
            t_.objects[b].tetrahedra.count > 0;
   }
@@ -416,7 +455,11 @@ class RowMaker {
     row.normal = found.normal;
     row.distance = found.share * distance_of(found);
     row.friction = std::sqrt(object(found.first_mesh).friction * object(found.second_mesh).friction);
-    if (belongs_to_solution(found)) {
+    add_row(row, found.first_mesh, found.second_mesh);
+  }
+
+  void add_row(const SurfaceRow& row, std::uint32_t first_mesh, std::uint32_t second_mesh) {
+    if (belongs_to_solution(first_mesh, second_mesh)) {
       group_.stiff_rows.push_back(row);
     } else {
       packer_.add(row);
@@ -427,7 +470,40 @@ class RowMaker {
   SurfaceContacts& c_;
   SurfaceGroup& group_;
   SurfaceRowPacker packer_;
+  const SurfaceTangle* tangle_ = nullptr;  ///< That of the pair of surfaces at hand, if they have one.
 };
+
+/// Finds where surfaces of the group go through each other, of those that may.
+void find_tangles(const state::Tables& t, SurfaceContacts& c, SurfaceGroup& group) {
+  group.tangles.clear();
+  group.counts.crossings = 0;
+  const auto may_cross = [&](std::uint32_t mesh) { return c.may_cross[mesh] != 0; };
+  if (std::none_of(group.meshes.begin(), group.meshes.end(), may_cross)) return;
+  for_vertices(c, group, [&](std::uint32_t vertex, std::uint32_t) {
+    c.exact_position[vertex] = vector_cast<double>(c.position[vertex].x);
+  });
+  SurfaceTangle tangle;
+  for (std::uint32_t i = 0; i < group.pairs.size(); ++i) {
+    const auto& [a, b] = group.pairs[i];
+    if (!may_cross(a) && !may_cross(b)) continue;
+    find_crossings(c.surfaces, a, b, c.exact_position, static_cast<double>(group.reserve), tangle.crossings);
+    if (tangle.crossings.empty()) continue;
+    list_passed(t, c.surfaces, a, b, tangle.crossings, tangle.passed);
+    tangle.pair = i;
+    group.counts.crossings += static_cast<std::uint32_t>(tangle.crossings.size());
+    group.tangles.push_back(tangle);
+  }
+}
+
+/// Notes which surfaces of the group are to be looked at again: those that go through others, and where
+/// some touched, all that were looked at now.
+void note_tangles(SurfaceContacts& c, const SurfaceGroup& group, bool any_touching) {
+  for (const std::uint32_t mesh : group.meshes) c.crosses[mesh] = any_touching ? c.may_cross[mesh] : 0;
+  for (const SurfaceTangle& tangle : group.tangles) {
+    for (const std::uint32_t mesh : group.pairs[tangle.pair]) c.crosses[mesh] = 1;
+  }
+  for (const std::uint32_t mesh : group.meshes) c.may_cross[mesh] = c.crosses[mesh];
+}
 
 }  // namespace
 
@@ -448,6 +524,7 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
                          SurfaceContacts& contacts, SurfaceGroup& group) {
   place_vertices(tables, contacts, group);
   make_cages(tables, h, contacts, group);
+  find_tangles(tables, contacts, group);
   group.rows.clear();
   group.stiff_rows.clear();
   group.face_pairs.clear();
@@ -494,10 +571,15 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
   group.face_pairs.reserve(count / kLanes + 1);
   group.edge_pairs.reserve(count / kLanes + 1);
   // Rows go into blocks in the order of pairs, whoever found them.
+  const std::uint32_t touched_before = group.counts.uncertain;
+  auto tangle = group.tangles.begin();
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+    maker.begin_pair(tangle != group.tangles.end() && tangle->pair == i ? &*tangle++ : nullptr);
     for (const SurfaceFound& found : group.found[i]) maker.take(found);
   }
+  maker.begin_pair(nullptr);
   maker.finish();
+  note_tangles(contacts, group, group.counts.uncertain > touched_before);
   group.counts.pairs = count_pairs(group.face_pairs) + count_pairs(group.edge_pairs);
 }
 

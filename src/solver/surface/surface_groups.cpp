@@ -89,18 +89,6 @@ bool refresh_bounds(const state::Tables& t, Real h, SurfaceContacts& contacts) {
   return any;
 }
 
-/// Whether two surfaces touch at all, by their filters and by what they are. Ropes that both touch_ropes are
-/// solved as one (docs/decisions/0024-ropes-that-touch.md), and those that both repel keep their distance.
-bool touch(const state::Tables& t, const SurfaceMeshes& surfaces, std::uint32_t a, std::uint32_t b) {
-  const state::Deformable& first = t.objects[surfaces.meshes[a].object];
-  const state::Deformable& second = t.objects[surfaces.meshes[b].object];
-  if (!state::filters_agree(first.surface.filter, second.surface.filter)) return false;
-  if (first.touches_ropes && second.touches_ropes) return false;
-  if (first.repulsion_strength > Real(0) && second.repulsion_strength > Real(0)) return false;
-  const std::array<std::uint32_t, 2> pair = {std::min(a, b), std::max(a, b)};
-  return !std::binary_search(surfaces.sewn.begin(), surfaces.sewn.end(), pair);
-}
-
 /// Lists the pairs of surfaces whose bounds overlap, in ascending order.
 void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
   const std::vector<SurfaceMesh>& meshes = contacts.surfaces.meshes;
@@ -119,7 +107,7 @@ void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
       const std::uint32_t b = order[j];
       if (contacts.bounds[b].lower.x > contacts.bounds[a].upper.x) break;
       if (!overlap(contacts.bounds[a], contacts.bounds[b])) continue;
-      if (!touch(t, contacts.surfaces, a, b)) continue;
+      if (!surfaces_touch(t, contacts.surfaces, a, b)) continue;
       contacts.next_pairs.push_back({std::min(a, b), std::max(a, b)});
     }
   }
@@ -155,6 +143,7 @@ void make_groups(SurfaceContacts& contacts) {
       group.pairs.clear();
       group.known = false;
       group.counts = {};
+      group.spent_rows.clear();
     }
     contacts.next_groups[number].pairs.push_back({a, b});
   }
@@ -175,6 +164,19 @@ void make_groups(SurfaceContacts& contacts) {
 }
 
 }  // namespace
+
+// Ropes that both touch_ropes are
+// solved as one (docs/decisions/0024-ropes-that-touch.md), and those that both repel keep their distance.
+bool surfaces_touch(const state::Tables& tables, const SurfaceMeshes& surfaces, std::uint32_t a,
+                    std::uint32_t b) {
+  const state::Deformable& first = tables.objects[surfaces.meshes[a].object];
+  const state::Deformable& second = tables.objects[surfaces.meshes[b].object];
+  if (!state::filters_agree(first.surface.filter, second.surface.filter)) return false;
+  if (first.touches_ropes && second.touches_ropes) return false;
+  if (first.repulsion_strength > Real(0) && second.repulsion_strength > Real(0)) return false;
+  const std::array<std::uint32_t, 2> pair = {std::min(a, b), std::max(a, b)};
+  return !std::binary_search(surfaces.sewn.begin(), surfaces.sewn.end(), pair);
+}
 
 void refresh_surface_groups(const state::Tables& tables, Real h, SurfaceContacts& contacts) {
   if (!refresh_bounds(tables, h, contacts)) return;

@@ -2,6 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "geometry/box.h"
+#include "solver/surface/surface_crossings.h"
 #include "solver/surface/surface_mesh.h"
 #include "solver/surface/surface_records.h"
 
@@ -17,6 +18,14 @@ struct SurfaceCounts {
   std::uint32_t held_back = 0;  ///< Vertices that were held back, in all substeps.
   std::uint32_t pairs = 0;      ///< Pairs that cages did not keep apart when contacts were found last.
   std::uint32_t uncertain = 0;  ///< Pairs that touched or crossed when they were found.
+  std::uint32_t crossings = 0;  ///< Edges that went through triangles when contacts were found last.
+};
+
+/// Two surfaces that go through each other.
+struct SurfaceTangle {
+  std::uint32_t pair = 0;  ///< Index of SurfaceGroup::pairs.
+  std::vector<SurfaceCrossing> crossings;
+  std::vector<std::uint32_t> passed;  ///< Vertices that are to go back.
 };
 
 /// What presses on a point of a rope in a substep: the side of a row of contact that faces it.
@@ -49,9 +58,11 @@ struct SurfaceGroup {
   Vec3 displacement_now = {};  ///< Its motion in this substep [m].
   int substeps_left = 0;       ///< Particle substeps for which cages were made.
   std::vector<SurfaceRowBlock> rows;
-  std::vector<SurfaceRow> stiff_rows;  ///< Those between solids that are solved as a whole.
+  std::vector<SurfaceRowBlock> spent_rows;  ///< Solved in this substep, until others were found.
+  std::vector<SurfaceRow> stiff_rows;       ///< Those between solids that are solved as a whole.
   std::vector<SurfacePairBlock> face_pairs, edge_pairs;
   std::vector<std::vector<SurfaceFound>> found;  ///< By pair of meshes: scratch memory.
+  std::vector<SurfaceTangle> tangles;            ///< In the order of pairs.
   std::vector<std::uint32_t> hot;                ///< Scratch memory: pairs that are corrected.
   std::vector<Real> speeds;                      ///< Scratch memory.
   SurfaceCounts counts;
@@ -75,6 +86,10 @@ struct SurfaceContacts {
   std::vector<SurfaceCage> cage;                ///< By vertex.
   std::vector<std::uint32_t> in_open_block;     ///< By vertex: bit k says that a row in open block k has it.
   std::vector<std::uint8_t> stays;              ///< By vertex: it is held back in this substep.
+  std::vector<std::uint8_t> may_cross;          ///< By mesh: it is looked at for crossings in this step.
+  std::vector<std::uint8_t> crosses;            ///< By mesh: scratch memory.
+  std::vector<std::uint8_t> passed;             ///< By vertex: scratch memory, all zero.
+  std::vector<DVec3> exact_position;            ///< By vertex: scratch memory.
   std::vector<SurfaceGroup> groups;  ///< The first `live_groups`, in the order of their first meshes.
   std::size_t live_groups = 0;
   std::vector<SurfaceGroup> next_groups;                 ///< Scratch memory.
@@ -87,6 +102,7 @@ struct SurfaceContacts {
   bool any_stiff = false;               ///< Some object is.
   bool any_rope = false;                ///< Some surface is a rope.
   std::vector<std::uint8_t> refreshed;  ///< By object: contacts were found anew in this substep.
+  bool keeps_spent_rows = false;        ///< Whether groups are to keep their `spent_rows`.
   std::vector<RopeLoad> loads;          ///< What presses on ropes in this substep, by group and row.
   std::vector<std::array<std::uint32_t, 2>> load_order;  ///< By point: its row, and that of a load.
   std::vector<Real> load_share;  ///< By vertex: sum of its weights in rows that press on ropes.
@@ -107,6 +123,10 @@ void for_vertices(const SurfaceContacts& contacts, const SurfaceGroup& group, Vi
     for (std::uint32_t vertex = mesh.first_vertex; vertex < mesh.end_vertex(); ++vertex) visit(vertex, i);
   }
 }
+
+/// Whether two surfaces touch each other at all, by their filters and by what they are.
+[[nodiscard]] bool surfaces_touch(const state::Tables& tables, const SurfaceMeshes& surfaces, std::uint32_t a,
+                                  std::uint32_t b);
 
 /// Says anew which surfaces may meet within the rest of the step, where they leave what was expected or
 /// a step begins. Groups that stay as they are keep what was found.

@@ -40,6 +40,10 @@ inline constexpr Real kWedgeCosine = Real(0.15);
 inline constexpr int kSurfaceSweeps = 2;
 inline constexpr int kSurfaceRounds = 3;
 
+/// How far a part that has come through a surface is drawn back until contacts are found again, over the
+/// length of an edge [ratio]. Larger: what began crossed flies apart. Smaller: it takes longer.
+inline constexpr Real kWayBack = Real(0.05);
+
 // Cages.
 
 /// Room of a point beyond its expected path, over the length of an edge [ratio]: where the group hardly

@@ -7,6 +7,7 @@
 #include "solver/rope/rope_tuning.h"
 #include "solver/rope/rope_twist.h"
 #include "solver/solid/shape_matching.h"
+#include "solver/surface/surface_contacts.h"
 #include "state/sleeping_pairs.h"
 #include "world/claim.h"
 #include "world/hook_stages.h"
@@ -295,6 +296,7 @@ Measurement World::measure() const {
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks) m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t));
+  m.largest_surface_overlap = static_cast<double>(solver::largest_overlap(t, reading->frame.surfaces));
   m.largest_penetration = std::max(collision::largest_penetration(t), deepest_of_bodies(t));
   return m;
 }

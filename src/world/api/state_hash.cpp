@@ -70,8 +70,12 @@ void add_rest_form(StateHash& hash, const state::Deformable& object) {
   if (object.rest_edges) hash.add(*object.rest_edges);
 }
 
-/// Adds what the description said of contacts with deformables, if it said anything.
+/// Adds what the description said of contacts with deformables, if it said anything, and whether it is looked
+/// at for crossings, if it is.
 void add_surface(StateHash& hash, const state::Deformable& object) {
+  if (object.surface.may_cross) hash.add(object.surface.may_cross);
+  if (object.reports_contacts || object.hit_speed < kRigid)
+    add(hash, object.reports_contacts, object.hit_speed);
   const FilterDesc& filter = object.surface.filter;
   const FilterDesc usual = {};
   const bool touches = object.surface.self_contact || object.touches_surfaces;

@@ -497,6 +497,7 @@ Result<void> World::set_position(PointRef point, DVec3 position) {
   if (auto good = Checks("").place("position", position).result(); !good) return good;
   state::Tables& t = claim.tables();
   t.particles.position[row->particle].x = vector_cast<Real>(position - t.objects[row->object].origin);
+  t.objects[row->object].surface.may_cross = true;
   for (state::Pin& pin : t.pins) {
     if (pin.particle == row->particle)
       pin.start = position - solver::motion_offset(pin.motion, t.time - pin.start_time);
@@ -603,6 +604,8 @@ Result<void> World::restore(const Snapshot& snapshot) {
   claim->derived.boxes_are_current = false;
   world::clear_events(claim->last_step.events);
   claim->last_step.broken_hooks.clear();
+  world::clear_deformable_contacts(claim->last_step);
+  claim->frame.surfaces.active = false;  // What it found is not of these tables.
   world::restore_tables(snapshot.data_->tables, claim.tables());
   return {};
 }
