@@ -324,12 +324,12 @@ void solve_yarns(WorldData& world) {
   });
 }
 
-void find_loaded_cloths(WorldData& world, Real h) {
+void find_loaded_cloths(WorldData& world) {
   solver::LoadedCloths& loaded = world.frame.loaded_cloths;
   loaded.lent.clear();
   for (const solver::PassMass& mass : world.frame.pass_masses) loaded.lent.push_back(mass.particle);
   for (const solver::HookedPoint& point : world.frame.hooked_points) loaded.lent.push_back(point.particle);
-  solver::find_loaded_cloths(world.derived.cloth_bearings, world.tables, h, loaded);
+  solver::find_loaded_cloths(world.derived.cloth_bearings, world.tables, loaded);
 }
 
 void solve_loaded_cloths(WorldData& world, Real h) {
@@ -342,7 +342,6 @@ void solve_loaded_cloths(WorldData& world, Real h) {
     for (int i = range.begin; i < range.end; ++i)
       solver::solve_loaded_cloth(static_cast<std::size_t>(i), part, h, world.tables, loaded);
   });
-  solver::release_cloth_presses(loaded.presses, world.tables);
   for (const std::uint8_t unconverged : loaded.is_unconverged) world.frame.cloths_unconverged += unconverged;
 }
 

@@ -32,7 +32,7 @@ void solve_bends(WorldData& world);
 
 /// The first function finds cloths that bear much more than their yarns hold, before any spring is solved.
 /// The second solves these as a whole, after all passes (solver/cloth/loaded_cloths.h).
-void find_loaded_cloths(WorldData& world, Real h);
+void find_loaded_cloths(WorldData& world);
 void solve_loaded_cloths(WorldData& world, Real h);
 
 /// Starts a particle substep of length `h` [s] for ropes and coupled groups. Twisted ropes turn bodies, hooks

@@ -108,8 +108,6 @@ void solve_point_contacts(WorldData& world, Real h) {
   }
   for (solver::SoftGroup& group : world.derived.soft.groups)
     solver::settle_pressed_points(h, group.tetrahedra, t);
-  if (!world.frame.loaded_cloths.cloths.empty())
-    solver::settle_cloth_presses(world.frame.loaded_cloths.presses, h, t.contacts);
 }
 
 void share_passing_masses(WorldData& world, Real h, bool first) {

@@ -31,19 +31,6 @@ inline constexpr double kClothStepError = 0.1;
 inline constexpr int kMostClothSteps = 30;
 inline constexpr int kMostClothHalvings = 10;
 
-/// Times that points are let go or taken hold of in a substep, at most. Chosen by hand; no measurement is
-/// recorded.
-inline constexpr int kMostPressRenewals = 10;
-
-/// Share of the most friction up to which a point sticks at first to what presses on it, and error of
-/// friction where it slides [ratio]. Chosen by hand; no measurement is recorded.
-inline constexpr double kStickingShareOnCloth = 0.95;
-inline constexpr double kFrictionErrorOnCloth = 0.1;
-
-/// Drag of friction on a point, over the mass with which springs resist its motion, from which on the point
-/// sticks [ratio]. Chosen by hand; no measurement is recorded.
-inline constexpr double kMostDragOnCloth = 100;
-
 /// Momentum that a cloth may lack as a whole, over what its springs have changed [ratio]; what is left is
 /// shared out by mass. Larger: with 1e-2 a point of a hammock went through the floor.
 inline constexpr double kClothMotionError = 1e-3;

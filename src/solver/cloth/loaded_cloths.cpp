@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace hooke::solver {
 
@@ -59,80 +58,6 @@ ClothBearing bearing_of(const state::Tables& tables, std::uint32_t row, std::vec
           .bends_have_springs = bends_have_springs(tables, cloth)};
 }
 
-/// The index of the bearing of the cloth that has a particle, or the number of bearings if none has.
-std::size_t bearing_with(std::span<const ClothBearing> bearings, const state::Tables& tables,
-                         std::uint32_t particle) {
-  const auto behind = std::upper_bound(bearings.begin(), bearings.end(), particle,
-                                       [&](std::uint32_t row, const ClothBearing& bearing) {
-                                         return row < tables.objects[bearing.object].particles.first;
-                                       });
-  if (behind == bearings.begin()) return bearings.size();
-  const auto found = std::prev(behind);
-  const bool has_it = particle < tables.objects[found->object].particles.end();
-  return has_it ? static_cast<std::size_t>(found - bearings.begin()) : bearings.size();
-}
-
-/// Marks the cloths that bear too much at a single point.
-void mark_points(std::span<const ClothBearing> bearings, const state::Tables& tables, LoadedCloths& loaded) {
-  for (const std::uint32_t particle : loaded.lent) {
-    const std::size_t i = bearing_with(bearings, tables, particle);
-    if (i == bearings.size()) continue;
-    const Real mass = mass_of(tables, particle);
-    // What does not give way holds the cloth, and is no load.
-    if (mass > bearings[i].most_mass &&
-        mass < static_cast<Real>(kMassThatHolds) * tables.particles.mass[particle])
-      loaded.marks[i] = 1;
-  }
-}
-
-/// Lists the bodies that press on points which something bears from below: it bears these bodies, too.
-std::vector<std::uint32_t> find_borne(std::span<const ClothPress> presses, DVec3 gravity) {
-  std::vector<std::uint32_t> borne;
-  for (std::size_t first = 0; first < presses.size();) {
-    std::size_t end = first;
-    bool is_borne = false;
-    for (; end < presses.size() && presses[end].particle == presses[first].particle; ++end)
-      is_borne = is_borne || (presses[end].presses && dot(presses[end].normal, gravity) < 0);
-    for (; first < end; ++first) {
-      if (is_borne && presses[first].gives_way) borne.push_back(presses[first].body);
-    }
-  }
-  std::sort(borne.begin(), borne.end());
-  return borne;
-}
-
-/// Marks the cloths on which too much lies: what gravity presses on them, and nothing else bears.
-void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& tables, LoadedCloths& loaded) {
-  const auto gravity = vector_cast<double>(tables.desc.gravity);
-  const double size = length(gravity);
-  const std::vector<std::uint32_t> borne = find_borne(loaded.presses, gravity);
-  loaded.pressing.assign(bearings.size(), 0);
-  for (const ClothPress& press : loaded.presses) {
-    const std::size_t i = bearing_with(bearings, tables, press.particle);
-    if (i == bearings.size() || std::binary_search(borne.begin(), borne.end(), press.body)) continue;
-    loaded.pressing[i] += press.share * (size > 0 ? std::max(0.0, dot(press.normal, gravity)) / size : 1);
-    if (loaded.pressing[i] > static_cast<double>(bearings[i].most_mass)) loaded.marks[i] = 1;
-  }
-}
-
-/// Drops what presses on other cloths, and counts the cloths that hold each body.
-void keep_presses_of_loaded(std::span<const ClothBearing> bearings, const state::Tables& tables,
-                            LoadedCloths& loaded) {
-  std::vector<std::pair<std::uint32_t, std::size_t>> holds;  // Of which body which cloth.
-  std::erase_if(loaded.presses, [&](const ClothPress& press) {
-    const std::size_t i = bearing_with(bearings, tables, press.particle);
-    const bool is_loaded = i < bearings.size() && (loaded.marks[i] != 0 || bearings[i].has_heavy_points);
-    if (is_loaded) holds.emplace_back(press.body, i);
-    return !is_loaded;
-  });
-  std::sort(holds.begin(), holds.end());
-  holds.erase(std::unique(holds.begin(), holds.end()), holds.end());
-  for (ClothPress& press : loaded.presses) {
-    const auto of_body = [&](const auto& hold) { return hold.first == press.body; };
-    press.cloths = static_cast<int>(std::count_if(holds.begin(), holds.end(), of_body));
-  }
-}
-
 }  // namespace
 
 std::vector<ClothBearing> find_bearings(const state::Tables& tables) {
@@ -146,17 +71,26 @@ std::vector<ClothBearing> find_bearings(const state::Tables& tables) {
   return bearings;
 }
 
-void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables,
                         LoadedCloths& loaded) {
   loaded.cloths.clear();
   loaded.unsprung.clear();
-  loaded.presses.clear();
-  if (bearings.empty()) return;
   loaded.marks.assign(bearings.size(), 0);
-  find_cloth_presses(tables, h, loaded.presses);
-  mark_points(bearings, tables, loaded);
-  mark_pressed(bearings, tables, loaded);
-  keep_presses_of_loaded(bearings, tables, loaded);
+  const auto look_at = [&](std::uint32_t particle) {
+    const auto behind = std::upper_bound(bearings.begin(), bearings.end(), particle,
+                                         [&](std::uint32_t row, const ClothBearing& bearing) {
+                                           return row < tables.objects[bearing.object].particles.first;
+                                         });
+    if (behind == bearings.begin()) return;
+    const ClothBearing& bearing = *std::prev(behind);
+    if (particle >= tables.objects[bearing.object].particles.end()) return;
+    const Real mass = mass_of(tables, particle);
+    // What does not give way holds the cloth, and is no load.
+    if (mass > bearing.most_mass &&
+        mass < static_cast<Real>(kMassThatHolds) * tables.particles.mass[particle])
+      loaded.marks[static_cast<std::size_t>(std::prev(behind) - bearings.begin())] = 1;
+  };
+  for (const std::uint32_t particle : loaded.lent) look_at(particle);
   for (std::size_t i = 0; i < bearings.size(); ++i) {
     if (loaded.marks[i] == 0 && !bearings[i].has_heavy_points) continue;
     const state::Rows points = tables.objects[bearings[i].object].particles;
@@ -189,12 +123,8 @@ void solve_loaded_cloth(std::size_t i, int part, Real h, state::Tables& tables, 
   const LoadedCloth& cloth = loaded.cloths[i];
   const state::Deformable& object = tables.objects[cloth.object];
   const auto unsprung = std::span(loaded.unsprung).subspan(cloth.first, object.particles.count);
-  const auto comes_before = [](const ClothPress& press, std::uint32_t row) { return press.particle < row; };
-  const auto first =
-      std::lower_bound(loaded.presses.begin(), loaded.presses.end(), object.particles.first, comes_before);
-  const auto end = std::lower_bound(first, loaded.presses.end(), object.particles.end(), comes_before);
-  if (!loaded.solutions[static_cast<std::size_t>(part)].solve(
-          object, unsprung, std::span(first, end), cloth.with_bends, static_cast<double>(h), tables))
+  if (!loaded.solutions[static_cast<std::size_t>(part)].solve(object, unsprung, cloth.with_bends,
+                                                              static_cast<double>(h), tables))
     loaded.is_unconverged[i] = 1;
 }
 

@@ -2,7 +2,6 @@
 
 #include "hooke/math.h"
 
-#include "solver/cloth/cloth_presses.h"
 #include "solver/cloth/cloth_solution.h"
 #include "state/tables.h"
 
@@ -39,22 +38,20 @@ struct LoadedCloth {
 struct LoadedCloths {
   /// Rows of the particles to which what presses on them, or what they are hooked to, has lent its mass.
   std::vector<std::uint32_t> lent;
-  std::vector<ClothPress> presses;  ///< Of all cloths, in order of particles.
   std::vector<LoadedCloth> cloths;  ///< In the order of objects.
   std::vector<Vec3> unsprung;       ///< What their points would do without springs [m/s].
   std::vector<Vec3> sprung;         ///< Velocities of the points, set aside by begin_outside_forces [m/s].
   std::vector<ClothSolution> solutions;      ///< Memory, one for each part of a parallel loop.
   std::vector<std::uint8_t> is_unconverged;  ///< By cloth, 1 for what was not solved to the end.
   std::vector<std::uint8_t> marks;           ///< Scratch: by bearing, whether it is loaded.
-  std::vector<double> pressing;              ///< Scratch: by bearing, the mass that presses on it [kg].
 };
 
 /// Finds what each cloth can bear; call it when tables change.
 [[nodiscard]] std::vector<ClothBearing> find_bearings(const state::Tables& tables);
 
-/// Finds the cloths that are loaded in this substep of length `h` [s], by points of their own, by
-/// LoadedCloths::lent or by what presses on points, and notes the velocities of their points.
-void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+/// Finds the cloths that are loaded in this substep, by points of their own or by LoadedCloths::lent, and
+/// notes the velocities of their points.
+void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables,
                         LoadedCloths& loaded);
 
 /// Forces that are no springs act on what points would do without springs: gas, and bends where they are not
