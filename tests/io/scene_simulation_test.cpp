@@ -259,10 +259,10 @@ TEST_SUITE("io/scene_simulation") {
       "version": 1, "seconds": 1, "world": {"gravity": [0, 0, 0]},
       "bodies": [{"name": "knife", "kind": "kinematic", "shape": {"box": {"half_extents": [0.01, 0.3, 0.01]}},
                   "position": [-0.5, -0.52, 0], "velocity": [3, 0, 0], "collides": false,
-                  "blade": {"edge": [[0, 0, -0.3], [0, 0, 0.3]], "cuts": ["sheet", "block", "rope"]}}],
+                  "blade": {"edge": [[0, 0, -0.3], [0, 0, 0.45]], "cuts": ["sheet", "block", "rope"]}}],
       "cloths": [{"name": "sheet", "columns": 11, "rows": 11, "tethers": false, "array": {"grid": [1, 1, 2], "spacing": [1, 1, 0.1]}},
                  {"name": "other", "columns": 11, "rows": 11, "corner": [0, 0, -0.1]}],
-      "solids": [{"name": "block", "cells": [3, 3, 3], "size": [0.3, 0.3, 0.3], "position": [0.5, -0.5, 0.2],
+      "solids": [{"name": "block", "cells": [3, 3, 3], "size": [0.3, 0.3, 0.3], "position": [0.5, -0.5, 0.27],
                   "young_modulus": 10000}],
       "ropes": [{"name": "rope", "hook_point": [0.5, 0, 0.25], "direction": [0, -1, 0]}],
       "expect": [{"quantity": "broken", "of": "sheet[1]", "op": "==", "value": 11},
@@ -620,9 +620,9 @@ TEST_SUITE("io/scene_simulation") {
       "version": 1,
       "cloths": [
         {"name": "column", "columns": 4, "rows": 3, "pins": [{"column": "last"}]},
-        {"name": "free", "columns": 4, "rows": 3},
-        {"name": "row", "columns": 4, "rows": 3, "pins": [{"row": 0}]},
-        {"name": "top", "columns": 4, "rows": 3, "pins": [{"topmost": 0.001}]}],
+        {"name": "free", "columns": 4, "rows": 3, "corner": [0, 0, 1]},
+        {"name": "row", "columns": 4, "rows": 3, "corner": [0, 0, 2], "pins": [{"row": 0}]},
+        {"name": "top", "columns": 4, "rows": 3, "corner": [0, 0, 3], "pins": [{"topmost": 0.001}]}],
       "ropes": [{"name": "rope", "masses": 4, "pins": [0, "last"]}]
     })");
     step(simulation, 10);
