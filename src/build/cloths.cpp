@@ -506,6 +506,15 @@ void append_places(const Surface& surface, const ClothDesc& desc, state::Tables&
   }
 }
 
+/// Copies what a description says of the cloth as a whole.
+void copy_values(const ClothDesc& desc, state::Deformable& object) {
+  object.friction = desc.contact.friction;
+  object.yield_angle = desc.yield_angle;
+  object.tear_strain = tear_strain_of(desc);
+  object.drag_coefficient = desc.drag_coefficient;
+  object.lift_coefficient = desc.lift_coefficient;
+}
+
 }  // namespace
 
 Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
@@ -534,13 +543,9 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.gas = filled.gas;
   object.gas_volume = filled.gas_volume;
   object.surface = contact.value();
-  object.friction = desc.contact.friction;
-  report_contacts(desc.reports_contacts, desc.hit_speed, tables);
-  object.yield_angle = desc.yield_angle;
-  object.tear_strain = tear_strain_of(desc);
   object.columns = static_cast<std::uint32_t>(surface.columns);
-  object.drag_coefficient = desc.drag_coefficient;
-  object.lift_coefficient = desc.lift_coefficient;
+  copy_values(desc, object);
+  report_contacts(desc.reports_contacts, desc.hit_speed, tables);
   const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
                                       : area * static_cast<double>(desc.areal_density);
   append_springs(surface, desc, mass, tables);

@@ -232,9 +232,10 @@ class TouchSums {
     if (!asks(row.object, row.other)) return;
     row.normal = {block.normal[0][lane], block.normal[1][lane], block.normal[2][lane]};
     row.separation = -block.distance[lane];
-    for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t k = 0; k < 4; ++k) {
       row.separation +=
           row.weight[k] * dot(row.normal, c.start[vertex[k]].x + c.shift[c.surfaces.mesh_of[vertex[k]]]);
+    }
     row.along = block.pushed[lane];
     row.impulse =
         row.along * row.normal + Vec3{block.rubbed[0][lane], block.rubbed[1][lane], block.rubbed[2][lane]};
@@ -245,9 +246,9 @@ class TouchSums {
   [[nodiscard]] DVec3 place_of(const TouchRow& row) const {
     DVec3 place;
     for (std::uint32_t k = 0; k < row.count; ++k) {
-      if (row.weight[k] > Real(0))
-        place += static_cast<double>(row.weight[k]) *
-                 vector_cast<double>(t_.particles.position[row.particle[k]].x);
+      if (!(row.weight[k] > Real(0))) continue;
+      place +=
+          static_cast<double>(row.weight[k]) * vector_cast<double>(t_.particles.position[row.particle[k]].x);
     }
     return t_.objects[row.object].origin + place;
   }

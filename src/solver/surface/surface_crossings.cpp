@@ -143,46 +143,82 @@ class CrossingFinder {
     });
   }
 
-  void test(const std::array<std::uint32_t, 2>& end, const SurfaceMesh& mesh, const SurfaceTriangle& triangle,
-            bool edge_is_first) {
-    const std::array<std::uint32_t, 3>& corner = triangle.vertex;
+  /// An edge that goes through a triangle.
+  struct Piercing {
+    DVec3 p, q;                       ///< Ends of the edge.
+    std::array<double, 3> part = {};  ///< By corner, its weight at the place times `whole`.
+    double whole = 0;
+    DVec3 face;       ///< Normal of the triangle, twice as long as its area.
+    double size = 0;  ///< That length.
+  };
+
+  /// The side of the triangle on which the first end of an edge is that goes through it, 0 if it does not.
+  [[nodiscard]] int side_of_first(const std::array<std::uint32_t, 2>& end,
+                                  const std::array<std::uint32_t, 3>& corner) const {
     const DVec3 p = position_[end[0]];
     const DVec3 q = position_[end[1]];
-    const auto [a, b, c] = corner;
-    const int before = geometry::orientation(position_[a], position_[b], position_[c], p);
-    if (before == 0 || share_a_vertex(end, corner)) return;
-    if (geometry::orientation(position_[a], position_[b], position_[c], q) != -before) return;
-    const int turn = side(p, q, a, b);
-    if (side(p, q, b, c) != turn || side(p, q, c, a) != turn) return;
-    const DVec3 along = q - p;
-    const auto volume = [&](std::uint32_t u, std::uint32_t v) {
-      return std::abs(dot(along, cross(position_[u] - p, position_[v] - p)));
-    };
-    const std::array<double, 3> part = {volume(b, c), volume(c, a), volume(a, b)};
-    const double whole = part[0] + part[1] + part[2];
-    const DVec3 face = cross(position_[b] - position_[a], position_[c] - position_[a]);
-    const double size = length(face);
-    if (!(whole > 0) || !(size > 0)) return;
-    const auto depth = [&](DVec3 x) { return std::abs(dot(face, x - position_[a])) / size; };
-    if (!(std::min(depth(p), depth(q)) > reserve_)) return;
+    const DVec3 a = position_[corner[0]];
+    const DVec3 b = position_[corner[1]];
+    const DVec3 c = position_[corner[2]];
+    const int before = geometry::orientation(a, b, c, p);
+    if (before == 0 || share_a_vertex(end, corner) || geometry::orientation(a, b, c, q) != -before) return 0;
+    const int turn = side(p, q, corner[0], corner[1]);
+    const bool goes_through =
+        side(p, q, corner[1], corner[2]) == turn && side(p, q, corner[2], corner[0]) == turn;
+    return goes_through ? before : 0;
+  }
+
+  [[nodiscard]] Piercing piercing_of(const std::array<std::uint32_t, 2>& end,
+                                     const std::array<std::uint32_t, 3>& corner) const {
+    Piercing at = {.p = position_[end[0]], .q = position_[end[1]], .face = {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const DVec3 u = position_[corner[(k + 1) % 3]] - at.p;
+      const DVec3 v = position_[corner[(k + 2) % 3]] - at.p;
+      at.part[k] = std::abs(dot(at.q - at.p, cross(u, v)));
+    }
+    at.whole = at.part[0] + at.part[1] + at.part[2];
+    at.face = cross(position_[corner[1]] - position_[corner[0]], position_[corner[2]] - position_[corner[0]]);
+    at.size = length(at.face);
+    return at;
+  }
+
+  /// Whether it is so near to the border of one of the two that it only grazes.
+  [[nodiscard]] bool grazes(const Piercing& at, const SurfaceMesh& mesh,
+                            const SurfaceTriangle& triangle) const {
+    const std::array<std::uint32_t, 3>& corner = triangle.vertex;
+    const auto depth = [&](DVec3 x) { return std::abs(dot(at.face, x - position_[corner[0]])) / at.size; };
+    if (!(std::min(depth(at.p), depth(at.q)) > reserve_)) return true;
     for (std::size_t k = 0; k < 3; ++k) {
       // Heights of the place over edge k, and its distance from corner k.
       const double width = length(position_[corner[(k + 1) % 3]] - position_[corner[k]]);
-      const double from_edge = part[(k + 2) % 3] / whole * size / width;
-      if (!(from_edge > reserve_) && grazes_edge(p, q, mesh, triangle, k)) return;
+      const double from_edge = at.part[(k + 2) % 3] / at.whole * at.size / width;
+      if (!(from_edge > reserve_) && grazes_edge(at.p, at.q, mesh, triangle, k)) return true;
       const double longest = std::max(width, length(position_[corner[(k + 2) % 3]] - position_[corner[k]]));
-      if (!((1 - part[k] / whole) * longest > reserve_) && grazes_corner(along, mesh, corner[k])) return;
+      const bool is_near = !((1 - at.part[k] / at.whole) * longest > reserve_);
+      if (is_near && grazes_corner(at.q - at.p, mesh, corner[k])) return true;
     }
+    return false;
+  }
+
+  void test(const std::array<std::uint32_t, 2>& end, const SurfaceMesh& mesh, const SurfaceTriangle& triangle,
+            bool edge_is_first) {
+    const std::array<std::uint32_t, 3>& corner = triangle.vertex;
+    const int before = side_of_first(end, corner);
+    if (before == 0) return;
+    const Piercing at = piercing_of(end, corner);
+    if (!(at.whole > 0) || !(at.size > 0) || grazes(at, mesh, triangle)) return;
+    const std::array<double, 3>& part = at.part;
+    const DVec3 along = at.q - at.p;
     SurfaceCrossing crossing = {.end = end,
                                 .corner = corner,
-                                .weight = {part[0] / whole, part[1] / whole, part[2] / whole},
+                                .weight = {part[0] / at.whole, part[1] / at.whole, part[2] / at.whole},
                                 .place = {},
-                                .normal = (1 / size) * face,
+                                .normal = (1 / at.size) * at.face,
                                 .along = 0,
                                 .front_end = static_cast<std::uint8_t>(before > 0 ? 0 : 1),
                                 .edge_is_first = edge_is_first};
     for (std::size_t k = 0; k < 3; ++k) crossing.place += crossing.weight[k] * position_[corner[k]];
-    crossing.along = dot(crossing.place - p, along) / dot(along, along);
+    crossing.along = dot(crossing.place - at.p, along) / dot(along, along);
     found_.push_back(crossing);
   }
 

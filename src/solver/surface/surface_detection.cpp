@@ -505,6 +505,17 @@ void note_tangles(SurfaceContacts& c, const SurfaceGroup& group, bool any_touchi
   for (const std::uint32_t mesh : group.meshes) c.may_cross[mesh] = c.crosses[mesh];
 }
 
+/// Forgets what the last search of the group found.
+void begin_search(SurfaceGroup& group) {
+  group.rows.clear();
+  group.stiff_rows.clear();
+  group.face_pairs.clear();
+  group.edge_pairs.clear();
+  group.known = true;
+  group.first_load = group.end_load = 0;
+  ++group.counts.searches;
+}
+
 }  // namespace
 
 bool clip_out_of_start(const SurfaceCage& cage, Vec3& displacement) {
@@ -525,13 +536,7 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
   place_vertices(tables, contacts, group);
   make_cages(tables, h, contacts, group);
   find_tangles(tables, contacts, group);
-  group.rows.clear();
-  group.stiff_rows.clear();
-  group.face_pairs.clear();
-  group.edge_pairs.clear();
-  group.known = true;
-  group.first_load = group.end_load = 0;
-  ++group.counts.searches;
+  begin_search(group);
   for_items(pool, group.meshes.size(), [&](std::size_t i) {
     const std::uint32_t mesh = group.meshes[i];
     const Real radius = tables.objects[contacts.surfaces.meshes[mesh].object].surface.radius;
