@@ -228,7 +228,8 @@ void find_lines(JsonDocument& document) {
   }
 }
 
-/// Returns the child named by the first step of a path, or null, and removes the step from the path.
+}  // namespace
+
 const JsonNode* step_down(const JsonNode& node, std::string_view& path) {
   if (path.starts_with('[')) {
     const std::size_t end = std::min(path.find(']'), path.size());
@@ -246,8 +247,6 @@ const JsonNode* step_down(const JsonNode& node, std::string_view& path) {
   path.remove_prefix(key.size());
   return node.find(key);
 }
-
-}  // namespace
 
 std::string JsonDocument::place(std::uint32_t offset) const {
   const auto after = std::upper_bound(line_starts.begin(), line_starts.end(), offset);

@@ -34,6 +34,10 @@ struct JsonDocument {
   [[nodiscard]] const JsonNode& find_closest(std::string_view path) const;
 };
 
+/// Returns the child of a node that the first step of a path names, or null, and removes the step from the
+/// path. A step is a key or an index in brackets.
+[[nodiscard]] const JsonNode* step_down(const JsonNode& node, std::string_view& path);
+
 /// A JsonError is an error at an offset, which callers sort by before they format a message.
 struct JsonError {
   std::uint32_t offset = 0;

@@ -3,38 +3,11 @@
 #include "io/json/json_document.h"
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 #include <vector>
 
 namespace hooke {
 
 namespace {
-
-/// One step of a path such as "ropes[0].masses": a key, or an index.
-struct PathStep {
-  std::string key = {};
-  std::optional<std::size_t> index = {};
-};
-
-std::vector<PathStep> steps_of(std::string_view path) {
-  std::vector<PathStep> steps;
-  for (std::size_t i = 0; i < path.size();) {
-    const bool is_index = path[i] == '[';
-    if (is_index || path[i] == '.') ++i;
-    const std::size_t end = std::min(path.find_first_of(is_index ? "]" : ".[", i), path.size());
-    const std::string_view word = path.substr(i, end - i);
-    if (is_index) {
-      std::size_t index = 0;
-      for (const char digit : word) index = 10 * index + static_cast<std::size_t>(digit - '0');
-      steps.push_back({.index = index});
-    } else {
-      steps.push_back({.key = std::string(word)});
-    }
-    i = is_index ? end + 1 : end;
-  }
-  return steps;
-}
 
 /// Returns the offset after the string that begins at `start`.
 std::size_t end_of_string(std::string_view text, std::size_t start) {
@@ -93,12 +66,6 @@ void append_member(std::string& text, const io::JsonNode& object, const std::str
   text.insert(end_of_value(text, last.offset), (has_line ? ",\n" + indent : ", ") + member);
 }
 
-const io::JsonNode* child_of(const io::JsonNode& node, const PathStep& step) {
-  if (!step.index) return node.find(step.key);
-  const bool is_list = node.kind == io::JsonNode::Kind::kArray;
-  return is_list && *step.index < node.children.size() ? &node.children[*step.index] : nullptr;
-}
-
 }  // namespace
 
 Result<std::string> edit_scene_text(std::string text, std::string_view path, std::string_view value) {
@@ -108,25 +75,31 @@ Result<std::string> edit_scene_text(std::string text, std::string_view path, std
     return Error{ErrorCode::kWrongType, where, "what it shall be is no JSON: " + std::string(value)};
   const auto errors = io::parse_json(text, where, document);
   if (!errors.empty()) return errors.front().error;
-  const std::vector<PathStep> steps = steps_of(path);
   const io::JsonNode* node = &document.root;
-  std::size_t depth = 0;
-  for (; depth < steps.size(); ++depth) {
-    const io::JsonNode* child = child_of(*node, steps[depth]);
+  while (!path.empty()) {
+    std::string_view below = path;
+    const io::JsonNode* child = io::step_down(*node, below);
     if (child == nullptr) break;
     node = child;
+    path = below;
   }
-  if (depth == steps.size()) {
+  if (path.empty()) {
     const std::size_t start = node->offset;
     text.replace(start, end_of_value(text, start) - start, value);
     return text;
   }
   // What is missing on the way is made of objects.
+  std::vector<std::string_view> keys;
+  while (!path.empty()) {
+    if (path.starts_with('[')) return Error{ErrorCode::kUnknownKey, where, "the list has no such element"};
+    if (path.starts_with('.')) path.remove_prefix(1);
+    keys.push_back(path.substr(0, path.find_first_of(".[")));
+    path.remove_prefix(keys.back().size());
+  }
   std::string member(value);
-  for (std::size_t i = steps.size(); i-- > depth;) {
-    if (steps[i].index) return Error{ErrorCode::kUnknownKey, where, "the list has no such element"};
-    member = io::to_flat_text(io::make_string(steps[i].key)) + ": " + member;
-    if (i > depth) member = "{" + member + "}";
+  for (std::size_t i = keys.size(); i-- > 0;) {
+    member = io::to_flat_text(io::make_string(std::string(keys[i]))) + ": " + member;
+    if (i > 0) member = "{" + member + "}";
   }
   if (node->kind != io::JsonNode::Kind::kObject)
     return Error{ErrorCode::kWrongType, where, "lies in a value that has no keys"};

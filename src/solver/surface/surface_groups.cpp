@@ -165,8 +165,8 @@ void make_groups(SurfaceContacts& contacts) {
 
 }  // namespace
 
-// Ropes that both touch_ropes are
-// solved as one (docs/decisions/0024-ropes-that-touch.md), and those that both repel keep their distance.
+// Ropes that both touch ropes are solved as one (docs/decisions/0024-ropes-that-touch.md), and those that
+// both repel keep their distance.
 bool surfaces_touch(const state::Tables& tables, const SurfaceMeshes& surfaces, std::uint32_t a,
                     std::uint32_t b) {
   const state::Deformable& first = tables.objects[surfaces.meshes[a].object];
