@@ -405,10 +405,10 @@ std::optional<Real> slack_of_tethers(const ClothDesc& desc, double mass, double 
   constexpr double kMostOwnStretch = 1e-3;
   if (desc.tethers) return *desc.tethers ? std::optional<Real>(Real(0)) : std::nullopt;
   if (desc.pressure || can_tear(desc)) return std::nullopt;
-  if (!std::isinf(desc.extension_max)) return desc.extension_max;
   const double own_stretch = mass * kGravity / std::sqrt(area) / static_cast<double>(desc.stretch_stiffness);
-  if (own_stretch > kMostOwnStretch) return std::nullopt;
-  return static_cast<Real>(2 * kMostOwnStretch);
+  const bool is_limited = !std::isinf(desc.extension_max);
+  if (own_stretch > kMostOwnStretch) return is_limited ? std::optional(desc.extension_max) : std::nullopt;
+  return std::min(desc.extension_max, static_cast<Real>(2 * kMostOwnStretch));
 }
 
 void append_tethers(const Surface& s, const ClothDesc& desc, Real slack, state::Tables& tables) {

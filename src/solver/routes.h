@@ -88,9 +88,10 @@
 ///
 /// Cloths. Springs, limits and bends along the rows and columns of a woven cloth are solved yarn by yarn,
 /// each exactly (solver/soft/yarns.h, docs/decisions/0046-yarns.md); all others are swept once in a substep.
-/// A cloth with a point that bears more than four times the mass of a yarn, by a load, a hook or what presses
-/// on its faces, is solved as a whole after these passes (solver/cloth/loaded_cloths.h,
-/// docs/decisions/0049-loaded-cloths.md). StepReport::cloths_unconverged counts what used up its work.
+/// A cloth that bears more than four times the mass of a yarn, at a point by a load, a hook or what presses
+/// on its faces, or by all that gravity presses on its points, is solved as a whole after these passes, with
+/// the bodies on its points (solver/cloth/loaded_cloths.h, docs/decisions/0049-loaded-cloths.md).
+/// StepReport::cloths_unconverged counts what used up its work.
 ///
 /// Solids of which a tetrahedron is stiff are solved as a whole, with what presses on them, what they are
 /// hooked to and each other (solver/solid/stiff_solution.h, docs/decisions/0037-stiff-solids-as-a-whole.md);

@@ -324,6 +324,10 @@ void solve_yarns(WorldData& world) {
   });
 }
 
+void find_pressed_cloths(WorldData& world, Real h) {
+  solver::find_pressed_cloths(world.derived.cloth_bearings, world.tables, h, world.frame.loaded_cloths);
+}
+
 void find_loaded_cloths(WorldData& world) {
   solver::LoadedCloths& loaded = world.frame.loaded_cloths;
   loaded.lent.clear();
@@ -342,6 +346,7 @@ void solve_loaded_cloths(WorldData& world, Real h) {
     for (int i = range.begin; i < range.end; ++i)
       solver::solve_loaded_cloth(static_cast<std::size_t>(i), part, h, world.tables, loaded);
   });
+  solver::release_cloth_presses(loaded.presses, world.tables);
   for (const std::uint8_t unconverged : loaded.is_unconverged) world.frame.cloths_unconverged += unconverged;
 }
 
@@ -479,7 +484,11 @@ void solve_ropes(WorldData& world, double end_time, Real h, bool first) {
   });
   for_ranges(*world.pool, static_cast<int>(world.derived.coupled_groups.count), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {
-      solver::solve_coupled_group(world.frame.velocity_before, {.h = h, .end_time = end_time, .first = first},
+      solver::solve_coupled_group(world.frame.velocity_before,
+                                  {.h = h,
+                                   .end_time = end_time,
+                                   .first = first,
+                                   .loaded_at_points = world.frame.loaded_cloths.loaded_at_points},
                                   world.derived.coupled_groups.groups[i], world.derived.rope_systems,
                                   world.frame.body_contacts, tables);
     }

@@ -30,8 +30,10 @@ void solve_yarns(WorldData& world);
 void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last);
 void solve_bends(WorldData& world);
 
-/// The first function finds cloths that bear much more than their yarns hold, before any spring is solved.
-/// The second solves these as a whole, after all passes (solver/cloth/loaded_cloths.h).
+/// The first two functions find cloths that bear much more than their yarns hold, before any spring is
+/// solved: by what presses on their points, and by masses that these have or were lent. The third solves
+/// these as a whole, after all passes (solver/cloth/loaded_cloths.h).
+void find_pressed_cloths(WorldData& world, Real h);
 void find_loaded_cloths(WorldData& world);
 void solve_loaded_cloths(WorldData& world, Real h);
 

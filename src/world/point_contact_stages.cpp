@@ -108,6 +108,8 @@ void solve_point_contacts(WorldData& world, Real h) {
   }
   for (solver::SoftGroup& group : world.derived.soft.groups)
     solver::settle_pressed_points(h, group.tetrahedra, t);
+  if (!world.frame.loaded_cloths.cloths.empty())
+    solver::settle_cloth_presses(world.frame.loaded_cloths.presses, h, t.contacts);
 }
 
 void share_passing_masses(WorldData& world, Real h, bool first) {
@@ -119,7 +121,8 @@ void share_passing_masses(WorldData& world, Real h, bool first) {
     collision::sweep_body_passes(*world.pool, t, pass_substep(world, h), finder);
     collision::forget_body_passes(finder);
   }
-  solver::share_pass_masses(finder.passes, world.frame.surfaces.stiff, t, world.frame.pass_masses);
+  solver::share_pass_masses(finder.passes, world.frame.surfaces.stiff, world.frame.loaded_cloths.pressing, t,
+                            world.frame.pass_masses);
 }
 
 void give_back_passing_masses(WorldData& world) {

@@ -53,6 +53,7 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
   world::begin_coupled_groups(w, h, first_of_substep);
+  world::find_pressed_cloths(w, h);
   world::share_passing_masses(w, h, first_of_step);
   world::find_loaded_cloths(w);
   world::solve_springs(w, h, state::SpringClass::kStretch, state::SpringClass::kBend);

@@ -321,7 +321,7 @@ TEST_SUITE("world/element_contacts") {
         run(world, 1);
         for (const BodyId body : bodies) {
           CHECK(world.center_of_mass(body).y > 0.9);
-          CHECK(length(world.velocity(body)) < 0.5);
+          CHECK(length(world.velocity(body)) < 1);  // They roll on it, and push each other.
         }
       }
     }

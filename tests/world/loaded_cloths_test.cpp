@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <vector>
 
 /// \file
 /// Loads that are much heavier than a cloth, at single points of it: the cloth is solved as a whole.
@@ -77,9 +79,112 @@ void hang_box(World& world, ClothId cloth, Real mass) {
   take(world.add_hook(hook));
 }
 
+/// A cloth of 0.3 kg and 1.6 m x 1.6 m, held along all edges at a height of 1.5 m, with a limit of 5 %.
+ClothDesc net() {
+  constexpr std::uint32_t kSide = 41;
+  ClothDesc cloth;
+  cloth.columns = cloth.rows = kSide;
+  cloth.width = cloth.height = Real(1.6);
+  cloth.corner = {-0.8, 1.5, -0.8};
+  cloth.row_direction = {0, 0, 1};
+  cloth.total_mass = Real(0.3);
+  cloth.extension_max = Real(0.05);
+  for (std::uint32_t i = 0; i < kSide; ++i) {
+    for (const std::uint32_t edge : {i, kSide * (kSide - 1) + i, i * kSide, i * kSide + kSide - 1})
+      cloth.pins.push_back({edge});
+  }
+  return cloth;
+}
+
+/// Drops bodies in a circle on the net.
+std::vector<BodyId> drop_on_net(World& world, int count, ShapeKind kind, Real mass) {
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    const double radius = count > 1 ? 0.3 : 0;
+    bodies.push_back(
+        take(world.add_body({.kind = BodyKind::kDynamic,
+                             .shape = kind == ShapeKind::kBox ? Shape::box({Real(0.1), Real(0.1), Real(0.1)})
+                                                              : Shape::sphere(Real(0.1)),
+                             .position = {radius * std::cos(angle), 1.65, radius * std::sin(angle)},
+                             .mass = mass})));
+  }
+  return bodies;
+}
+
+/// Largest extension of the links of the net.
+double net_extension(const World& world, ClothId cloth) {
+  constexpr std::uint32_t kSide = 41;
+  const PointView at = world.positions(cloth);
+  double largest = 0;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    const auto look = [&](std::uint32_t next) {
+      largest = std::max(largest, length(at[next] - at[i]) / 0.04 - 1);
+    };
+    if (i % kSide + 1 < kSide) look(i + 1);
+    if (i + kSide < kSide * kSide) look(i + kSide);
+  }
+  return largest;
+}
+
 }  // namespace
 
 TEST_SUITE("world/loaded_cloths") {
+  TEST_CASE("bodies that fall on points of a cloth are borne within its limit, without a gain of energy") {
+    struct Case {
+      int count;
+      ShapeKind kind;
+      Real mass;
+      bool corners_only;  ///< Nothing else holds the cloth.
+      double most;
+    };
+    for (const Case& c :
+         {Case{1, ShapeKind::kSphere, 4, false, 0.05}, Case{1, ShapeKind::kSphere, 20, false, 0.05},
+          Case{6, ShapeKind::kSphere, 1, false, 0.05}, Case{6, ShapeKind::kBox, 1, false, 0.05},
+          Case{6, ShapeKind::kSphere, 1, true, 0.05}, Case{6, ShapeKind::kBox, 1, true, 0.08}}) {
+      CAPTURE(c.count);
+      CAPTURE(c.mass);
+      CAPTURE(c.corners_only);
+      World world = make_world({});
+      ClothDesc desc = net();
+      if (c.corners_only) desc.pins = {{0}, {40}, {40 * 41}, {41 * 41 - 1}};
+      const ClothId cloth = take(world.add_cloth(desc));
+      const std::vector<BodyId> bodies = drop_on_net(world, c.count, c.kind, c.mass);
+      const double first = world.measure().energy.total();
+      double extension = 0;
+      double energy = first;
+      for (int i = 0; i < 90; ++i) {
+        CHECK(world.step(Real(1) / Real(60)).healthy());
+        extension = std::max(extension, net_extension(world, cloth));
+        energy = std::max(energy, world.measure().energy.total());
+      }
+      CHECK(extension < c.most);
+      CHECK(energy < (c.corners_only ? 1.01 : 1.001) * first);
+      for (const BodyId body : bodies) CHECK(world.pose(body).position.y > 1.2);
+    }
+  }
+
+  TEST_CASE("a ball that a free cloth catches keeps the momentum of both, with and without friction") {
+    for (const Real friction : {Real(0), Real(0.5)}) {
+      CAPTURE(friction);
+      World world = make_world(empty_space());
+      ClothDesc cloth = net();
+      cloth.pins.clear();
+      cloth.contact.friction = friction;
+      take(world.add_cloth(cloth));
+      take(world.add_body({.kind = BodyKind::kDynamic,
+                           .shape = {.kind = ShapeKind::kSphere, .radius = Real(0.1)},
+                           .position = {0.2, 1.65, 0.1},
+                           .velocity = {Real(1), Real(-3), Real(0.5)},
+                           .mass = 2}));
+      const Measurement before = world.measure();
+      run(world, 30);
+      const Measurement after = world.measure();
+      CHECK(length(after.momentum - before.momentum) < 1e-4 * length(before.momentum));
+      CHECK(after.energy.total() < 1.001 * before.energy.total());
+    }
+  }
+
   TEST_CASE("a flag of 0.2 kg keeps its limit of 5 % under masses at one point, and gains no energy") {
     for (const Real mass : {Real(0.1), Real(1), Real(5), Real(50)}) {
       CAPTURE(mass);
@@ -166,6 +271,20 @@ TEST_SUITE("world/loaded_cloths") {
       desc.corner.x = 3;
       desc.loads = {{kLoaded - 4, 2}};
       take(world.add_cloth(desc));
+    });
+  }
+
+  TEST_CASE("a cloth under bodies has the same bits for any workers, and after a restore") {
+    check_same_bits({}, [](World& world) {
+      take(world.add_cloth(net()));
+      drop_on_net(world, 6, ShapeKind::kBox, 1);
+      ClothDesc other = net();
+      other.corner.x = 2;
+      take(world.add_cloth(other));
+      take(world.add_body({.kind = BodyKind::kDynamic,
+                           .shape = {.kind = ShapeKind::kSphere, .radius = Real(0.1)},
+                           .position = {2.8, 1.65, 0},
+                           .mass = 4}));
     });
   }
 

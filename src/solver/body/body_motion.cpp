@@ -359,8 +359,11 @@ void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step
 }
 
 void push_body(std::uint32_t row, Vec3 impulse, Vec3 lever, Bodies& bodies) {
+  push_and_turn_body(row, impulse, cross(lever, impulse), bodies);
+}
+
+void push_and_turn_body(std::uint32_t row, Vec3 impulse, Vec3 angular, Bodies& bodies) {
   HOOKE_ASSERT(gives_way(bodies, row));
-  const Vec3 angular = cross(lever, impulse);
   const math::Symmetric3<Real>& scale = bodies.scale[row];
   Vec3 turn = scale * angular;
   if (is_gyroscopic_now(bodies, row)) {

@@ -50,6 +50,9 @@ void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step
 /// motion, not as an effect of contacts between bodies.
 void push_body(std::uint32_t row, Vec3 impulse, Vec3 lever, state::Bodies& bodies);
 
+/// The same for an impulse [N s] at the center and an angular impulse [N m s].
+void push_and_turn_body(std::uint32_t row, Vec3 impulse, Vec3 angular, state::Bodies& bodies);
+
 /// 1 / the mass that resists a push along the unit vector `direction` at `lever` from the center [1/kg].
 [[nodiscard]] Real inverse_mass_at(const state::Bodies& bodies, std::uint32_t row, Vec3 direction,
                                    Vec3 lever);

@@ -31,21 +31,14 @@ DVec3 weighted_sum(const Bend& bend, std::span<const DVec3> of) {
 
 void ClothSolution::take_points(const state::Deformable& cloth, std::span<const Vec3> unsprung,
                                 const state::Tables& tables) {
-  const std::size_t count = cloth.particles.count;
-  HOOKE_ASSERT(unsprung.size() == count);
-  unsprung_.resize(count);
-  x_.resize(count);
-  v_.resize(count);
-  mass_.resize(count);
-  change_.resize(count);
-  trial_.resize(count);
-  residual_.resize(count);
-  wanted_.resize(count);
-  direction_.resize(count);
-  image_.resize(count);
-  per_diagonal_.resize(count);
+  points_ = cloth.particles.count;
+  HOOKE_ASSERT(unsprung.size() == points_);
+  unsprung_.resize(points_);
+  x_.resize(points_);
+  v_.resize(points_);
+  mass_.resize(points_);
   is_held_ = false;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < points_; ++i) {
     const state::VelocityRecord& record = tables.particles.velocity[cloth.particles.first + i];
     unsprung_[i] = vector_cast<double>(unsprung[i]);
     x_[i] = vector_cast<double>(tables.particles.position[cloth.particles.first + i].x);
@@ -56,8 +49,22 @@ void ClothSolution::take_points(const state::Deformable& cloth, std::span<const 
   }
 }
 
+/// Makes room for all unknowns, points and bodies.
+void ClothSolution::set_sizes() {
+  const std::size_t count = unsprung_.size();
+  v_.insert(v_.end(), unsprung_.begin() + static_cast<std::ptrdiff_t>(points_), unsprung_.end());
+  change_.resize(count);
+  trial_.resize(count);
+  residual_.resize(count);
+  wanted_.resize(count);
+  direction_.resize(count);
+  image_.resize(count);
+  per_diagonal_.resize(count);
+}
+
 void ClothSolution::take_springs(const state::Deformable& cloth, const state::Springs& springs) {
-  rigid_ = kRigidOfCloth * std::accumulate(mass_.begin(), mass_.end(), 0.0) / (h_ * h_);
+  const auto end = mass_.begin() + static_cast<std::ptrdiff_t>(points_);
+  rigid_ = kRigidOfCloth * (std::accumulate(mass_.begin(), end, 0.0) + bodies_.mass()) / (h_ * h_);
   springs_.clear();
   std::ptrdiff_t limited = 0;  // Limits stand in the order of the springs that they belong to.
   for (std::uint32_t row = cloth.springs.first; row < cloth.springs.end(); ++row) {
@@ -135,7 +142,7 @@ double ClothSolution::energy(std::span<const DVec3> v) const {
     const DVec3 rate = weighted_sum(bend, v);
     sum += bend.stiffness * (length_squared(q + h_ * rate) + h_ * bend.damping * length_squared(rate));
   }
-  return 0.5 * sum;
+  return 0.5 * sum + bodies_.friction_energy(v);
 }
 
 /// Adds how isometric bends resist at v_.
@@ -153,8 +160,8 @@ void ClothSolution::linearize_bends() {
   }
 }
 
-/// Finds how springs resist at v_, and the residual.
-void ClothSolution::linearize() {
+/// Finds how springs resist at v_, and the residual, of points that no body holds.
+void ClothSolution::linearize_freely() {
   for (std::size_t i = 0; i < v_.size(); ++i) {
     residual_[i] = mass_[i] * (unsprung_[i] - v_[i]);
     per_diagonal_[i] = Symmetric3<double>::diagonal(mass_[i]);
@@ -181,6 +188,13 @@ void ClothSolution::linearize() {
     per_diagonal_[spring.b] = per_diagonal_[spring.b] + own;
   }
   linearize_bends();
+  bodies_.add_friction(v_, residual_, per_diagonal_);
+}
+
+/// Leaves to bodies what they hold, and finds the blocks of the preconditioner.
+void ClothSolution::restrict_to_freedom() {
+  bodies_.restrict_resistances(per_diagonal_);
+  bodies_.gather(residual_);
   for (std::size_t i = 0; i < v_.size(); ++i) {
     if (mass_[i] > 0) {
       per_diagonal_[i] = math::inverse(per_diagonal_[i]);
@@ -204,7 +218,7 @@ double ClothSolution::precondition() {
 /// Largest change of a velocity that the residual asks for by itself [m/s].
 double ClothSolution::largest_wanted() const {
   double largest = 0;
-  for (const DVec3& wanted : wanted_) largest = std::max(largest, length_squared(wanted));
+  for (std::size_t i = 0; i < points_; ++i) largest = std::max(largest, length_squared(wanted_[i]));
   return std::sqrt(largest);
 }
 
@@ -223,6 +237,8 @@ void ClothSolution::resist() {
     const DVec3 impulse = (h_ * (h_ + bend.damping) * bend.stiffness) * weighted_sum(bend, direction_);
     for (std::size_t k = 0; k < 4; ++k) image_[bend.points[k]] += bend.weight[k] * impulse;
   }
+  bodies_.resist(direction_, image_);
+  bodies_.gather(image_);
 }
 
 /// Goes along the direction to the minimum, and turns it. Returns the size of the residual there.
@@ -240,7 +256,13 @@ double ClothSolution::go_along(double size) {
   const double next = precondition();
   const double kept = next / size;
   for (std::size_t i = 0; i < direction_.size(); ++i) direction_[i] = wanted_[i] + kept * direction_[i];
+  bodies_.follow(direction_);
   return next;
+}
+
+/// Whether an unknown is the rotation of a body.
+bool ClothSolution::is_turn(std::size_t unknown) const {
+  return unknown >= points_ && (unknown - points_) % 2 == 1;
 }
 
 /// Whether a cloth that nothing holds lacks so much momentum that it would move otherwise as a whole.
@@ -250,6 +272,7 @@ bool ClothSolution::lacks_motion() const {
   double mass = 0;
   double changing = 0;
   for (std::size_t i = 0; i < v_.size(); ++i) {
+    if (is_turn(i)) continue;
     lacking += residual_[i];
     mass += mass_[i];
     changing += mass_[i] * length_squared(v_[i] - unsprung_[i]);
@@ -272,6 +295,7 @@ bool ClothSolution::find_change() {
   if (!(size > accepted_) && !(h_ * largest_wanted() > accepted_length_) && !lacks_motion()) return false;
   const double enough = kClothStepError * kClothStepError * size;
   direction_ = wanted_;
+  bodies_.follow(direction_);
   while (size > enough && may_go_on()) {
     ++directions_;
     size = go_along(size);
@@ -295,12 +319,12 @@ bool ClothSolution::go_down() {
 
 /// Takes back what momentum and angular momentum the error has made, where nothing holds the cloth: springs
 /// keep them.
-void ClothSolution::keep_momentum() {
+void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint32_t first_particle) {
   constexpr double kLeastSpinShare = 1e-9;  // of inertia, for points on a line
   if (is_held_) return;
   double mass = 0;
   DVec3 center, made;
-  for (std::size_t i = 0; i < v_.size(); ++i) {
+  for (std::size_t i = 0; i < points_; ++i) {
     mass += mass_[i];
     center += mass_[i] * x_[i];
     made += mass_[i] * (v_[i] - unsprung_[i]);
@@ -308,7 +332,12 @@ void ClothSolution::keep_momentum() {
   center = (1 / mass) * center;
   Symmetric3<double> inertia = {};
   DVec3 spin_made;
-  for (std::size_t i = 0; i < v_.size(); ++i) {
+  for (const ClothPress& press : presses) {
+    made += press.push;
+    const DVec3 center_of_body = x_[press.particle - first_particle] - press.lever;
+    spin_made += cross(center_of_body - center, press.push) + press.turn;
+  }
+  for (std::size_t i = 0; i < points_; ++i) {
     const DVec3 r = x_[i] - center;
     spin_made += mass_[i] * cross(r, v_[i] - unsprung_[i]);
     inertia =
@@ -319,30 +348,47 @@ void ClothSolution::keep_momentum() {
   }
   const double least = kLeastSpinShare * (inertia.xx + inertia.yy + inertia.zz);
   const DVec3 turn = math::inverse(inertia + Symmetric3<double>::diagonal(least)) * spin_made;
-  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] -= (1 / mass) * made + cross(turn, x_[i] - center);
+  for (std::size_t i = 0; i < points_; ++i) v_[i] -= (1 / mass) * made + cross(turn, x_[i] - center);
 }
 
-bool ClothSolution::solve(const state::Deformable& cloth, std::span<const Vec3> unsprung, bool with_bends,
-                          double h, state::Tables& tables) {
+bool ClothSolution::solve(const state::Deformable& cloth, std::span<const Vec3> unsprung,
+                          std::span<ClothPress> presses, bool with_bends, double h, state::Tables& tables) {
   h_ = h;
   take_points(cloth, unsprung, tables);
+  bodies_.take(cloth.particles.first, presses, tables, unsprung_, mass_);
+  is_held_ = is_held_ || bodies_.is_held();
+  set_sizes();
   take_springs(cloth, tables.springs);
   bends_.clear();
   if (with_bends) take_bends(cloth, tables.bends);
   from_passes_ = v_;
   v_ = unsprung_;
+  bodies_.move_along(v_);
   energy_ = energy(v_);
   directions_ = 0;
   accepted_ = -1;
   bool is_solved = false;
+  int renewals = 0;
   for (int step = 0; step < kMostClothSteps && !is_solved; ++step) {
-    linearize();
+    linearize_freely();
+    if (step > 0 && renewals < kMostPressRenewals && bodies_.renew(v_, residual_, per_diagonal_)) {
+      ++renewals;
+      bodies_.move_along(v_);
+      energy_ = energy(v_);
+      linearize_freely();
+    }
+    restrict_to_freedom();
     is_solved = !find_change();
     if (!is_solved && (!may_go_on() || !go_down())) break;
   }
+  bodies_.move_along(from_passes_);
   if (!is_solved && energy(from_passes_) < energy_) std::swap(v_, from_passes_);
-  keep_momentum();
-  for (std::size_t i = 0; i < v_.size(); ++i) {
+  if (!bodies_.empty()) {
+    linearize_freely();
+    bodies_.note_impulses(v_, unsprung_, residual_, is_solved, presses);
+  }
+  keep_momentum(presses, cloth.particles.first);
+  for (std::size_t i = 0; i < points_; ++i) {
     if (mass_[i] > 0) tables.particles.velocity[cloth.particles.first + i].v = vector_cast<Real>(v_[i]);
   }
   return is_solved;

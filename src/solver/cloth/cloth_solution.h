@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 
 #include "math/symmetric.h"
+#include "solver/cloth/cloth_presses.h"
 #include "state/tables.h"
 
 #include <array>
@@ -17,7 +18,8 @@
 ///
 /// least, u being what its points would do without its springs, and E the energies of these (the implicit
 /// Euler step as a minimum; Martin, Thomaszewski, Grinspun and Gross 2011). A load of any mass is felt
-/// through all of the cloth, and what is stopped short of the minimum can only lose energy.
+/// through all of the cloth, and what is stopped short of the minimum can only lose energy. Bodies that press
+/// on points are unknowns too (solver/cloth/cloth_presses.h).
 ///
 /// Newton's method finds it. Each step solves for the change of velocities by conjugate gradients, which the
 /// blocks of three by three on the diagonal precondition (Hestenes and Stiefel 1952), and is halved until the
@@ -32,10 +34,11 @@ class ClothSolution {
  public:
   /// Gives the points of a cloth the velocities of the solution, or leaves them those that they have where
   /// the solution ends before it is better. `unsprung` holds u [m/s] by point of the cloth. `with_bends` says
-  /// whether isometric bends count among its springs. Returns whether the error came down to
-  /// kLoadedClothError; the velocities are changed in any case.
-  [[nodiscard]] bool solve(const state::Deformable& cloth, std::span<const Vec3> unsprung, bool with_bends,
-                           double h, state::Tables& tables);
+  /// whether isometric bends count among its springs. Bodies of `presses`, which are in order of particles,
+  /// hold points; what they give is written there, and bodies stay as they are. Returns whether the error
+  /// came down to kLoadedClothError; the velocities are changed in any case.
+  [[nodiscard]] bool solve(const state::Deformable& cloth, std::span<const Vec3> unsprung,
+                           std::span<ClothPress> presses, bool with_bends, double h, state::Tables& tables);
 
  private:
   /// A spring, and its limit if it has one.
@@ -70,15 +73,19 @@ class ClothSolution {
   [[nodiscard]] double energy(std::span<const DVec3> v) const;
   void linearize();
   void linearize_bends();
+  void linearize_freely();
+  void restrict_to_freedom();
+  void set_sizes();
   void resist();
   [[nodiscard]] double precondition();
   [[nodiscard]] double go_along(double size);
   [[nodiscard]] double largest_wanted() const;
   [[nodiscard]] bool lacks_motion() const;
+  [[nodiscard]] bool is_turn(std::size_t unknown) const;
   [[nodiscard]] bool may_go_on() const;
   [[nodiscard]] bool find_change();
   [[nodiscard]] bool go_down();
-  void keep_momentum();
+  void keep_momentum(std::span<const ClothPress> presses, std::uint32_t first_particle);
 
   double h_ = 0;         ///< Length of the substep [s].
   double rigid_ = 0;     ///< Stiffness of what is rigid [N/m].
@@ -91,8 +98,11 @@ class ClothSolution {
   std::vector<Spring> springs_;
   std::vector<Resistance> resistances_;  ///< By spring.
   std::vector<Bend> bends_;
+  PressingBodies bodies_;
+  std::size_t points_ = 0;  ///< Their number.
   // By point.
-  std::vector<DVec3> x_;         ///< Positions when the substep begins [m].
+  std::vector<DVec3> x_;  ///< Positions when the substep begins [m].
+  // By unknown: points, then two vectors of each body.
   std::vector<double> mass_;     ///< [kg]; 0 for what is held.
   std::vector<DVec3> unsprung_;  ///< u [m/s]
   std::vector<DVec3> v_;         ///< [m/s]

@@ -5,10 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hooke::solver {
 
 namespace {
+
+// Marks of LoadedCloths::marks.
+constexpr std::uint8_t kPressed = 1;
+constexpr std::uint8_t kLoadedAtPoints = 2;
 
 Real mass_of(const state::Tables& tables, std::uint32_t particle) {
   const Real inverse_mass = tables.particles.velocity[particle].inverse_mass;
@@ -37,6 +42,18 @@ void for_points(OutsideForces forces, state::Tables& tables, const LoadedCloths&
   }
 }
 
+/// Mean length at rest of the springs along edges of a cloth [m].
+double mean_link(const state::Tables& tables, const state::Deformable& cloth) {
+  double sum = 0;
+  int count = 0;
+  for (std::uint32_t row = cloth.springs.first; row < cloth.springs.end(); ++row) {
+    if (tables.springs.kind[row] != state::SpringClass::kStretch) continue;
+    sum += static_cast<double>(tables.springs.rest_length[row]);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 /// What a yarn of the cloth can bear. A cloth of n points has yarns of about sqrt(n), each of the median
 /// mass, so that loads do not make it stronger.
 ClothBearing bearing_of(const state::Tables& tables, std::uint32_t row, std::vector<Real>& masses) {
@@ -55,7 +72,144 @@ ClothBearing bearing_of(const state::Tables& tables, std::uint32_t row, std::vec
   return {.object = row,
           .most_mass = most,
           .has_heavy_points = heavy,
+          .link_length = mean_link(tables, cloth),
           .bends_have_springs = bends_have_springs(tables, cloth)};
+}
+
+/// The index of the bearing of the cloth that has a particle, or the number of bearings if none has.
+std::size_t bearing_with(std::span<const ClothBearing> bearings, const state::Tables& tables,
+                         std::uint32_t particle) {
+  const auto behind = std::upper_bound(bearings.begin(), bearings.end(), particle,
+                                       [&](std::uint32_t row, const ClothBearing& bearing) {
+                                         return row < tables.objects[bearing.object].particles.first;
+                                       });
+  if (behind == bearings.begin()) return bearings.size();
+  const auto found = std::prev(behind);
+  const bool has_it = particle < tables.objects[found->object].particles.end();
+  return has_it ? static_cast<std::size_t>(found - bearings.begin()) : bearings.size();
+}
+
+/// Marks the cloths that bear too much at a single point.
+void mark_points(std::span<const ClothBearing> bearings, const state::Tables& tables, LoadedCloths& loaded) {
+  for (const std::uint32_t particle : loaded.lent) {
+    const std::size_t i = bearing_with(bearings, tables, particle);
+    if (i == bearings.size()) continue;
+    const Real mass = mass_of(tables, particle);
+    // What does not give way holds the cloth, and is no load.
+    if (mass > bearings[i].most_mass &&
+        mass < static_cast<Real>(kMassThatHolds) * tables.particles.mass[particle])
+      loaded.marks[i] = kLoadedAtPoints;
+  }
+}
+
+/// Mean velocity of the points of a cloth [m/s].
+DVec3 mean_velocity(const state::Tables& tables, const state::Deformable& cloth) {
+  DVec3 sum;
+  for (std::uint32_t i = cloth.particles.first; i < cloth.particles.end(); ++i)
+    sum += vector_cast<double>(tables.particles.velocity[i].v);
+  return (1.0 / static_cast<double>(cloth.particles.count)) * sum;
+}
+
+/// Whether a spring along an edge is so long that the cloth may be tangled.
+bool is_drawn_out(const state::Tables& tables, const state::Deformable& cloth) {
+  const state::Springs& springs = tables.springs;
+  const auto x = [&](std::uint32_t particle) { return tables.particles.position[particle].x; };
+  for (std::uint32_t row = cloth.springs.first; row < cloth.springs.end(); ++row) {
+    if (springs.kind[row] != state::SpringClass::kStretch) continue;
+    const Real most = static_cast<Real>(kMostPressedLength) * springs.rest_length[row];
+    if (length_squared(x(springs.particle_b[row]) - x(springs.particle_a[row])) > most * most) return true;
+  }
+  return false;
+}
+
+/// Drops what a linear problem says nothing of: what moves too far within the substep, and tangled cloths.
+void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+                       LoadedCloths& loaded) {
+  std::size_t known = bearings.size();  // Of what follows.
+  DVec3 velocity;
+  bool is_wild = false;
+  std::erase_if(loaded.presses, [&](const ClothPress& press) {
+    const std::size_t i = bearing_with(bearings, tables, press.particle);
+    if (i == bearings.size()) return true;
+    if (i != known) {
+      known = i;
+      velocity = mean_velocity(tables, tables.objects[bearings[i].object]);
+      is_wild = is_drawn_out(tables, tables.objects[bearings[i].object]);
+    }
+    const DVec3 speed = vector_cast<double>(tables.bodies.motion[press.body].v) - velocity;
+    return is_wild || length(speed) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
+  });
+}
+
+/// Drops bodies that are hooked to the cloth: its points have got their mass already.
+void drop_hooked_presses(const state::Tables& tables, LoadedCloths& loaded) {
+  std::vector<PressingBody> hooked;
+  for (const state::Hook& hook : tables.hooks) {
+    if (hook.broken || hook.a.is_point() == hook.b.is_point()) continue;
+    const state::HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
+    const state::HookPlace& body = hook.a.is_point() ? hook.b : hook.a;
+    hooked.push_back({.object = point.object, .body = body.body});
+  }
+  if (hooked.empty()) return;
+  std::sort(hooked.begin(), hooked.end());
+  std::erase_if(loaded.presses, [&](const ClothPress& press) {
+    const PressingBody pressing = {tables.contacts.object[press.contact], press.body};
+    return std::binary_search(hooked.begin(), hooked.end(), pressing);
+  });
+}
+
+/// Lists the bodies that press on points which something bears from below, or from the other side where
+/// nothing is below: it bears these bodies, too.
+std::vector<std::uint32_t> find_borne(std::span<const ClothPress> presses, DVec3 gravity) {
+  const bool is_weightless = !(length_squared(gravity) > 0);
+  std::vector<std::uint32_t> borne;
+  for (std::size_t first = 0; first < presses.size();) {
+    std::size_t end = first;
+    const DVec3 up = is_weightless ? presses[first].normal : -gravity;
+    bool is_borne = false;
+    for (; end < presses.size() && presses[end].particle == presses[first].particle; ++end) {
+      const double along = dot(presses[end].normal, up);
+      is_borne = is_borne || (presses[end].presses && (is_weightless ? along < 0 : along > 0));
+    }
+    for (; first < end; ++first) {
+      if (is_borne && presses[first].gives_way) borne.push_back(presses[first].body);
+    }
+  }
+  std::sort(borne.begin(), borne.end());
+  return borne;
+}
+
+/// Marks the cloths on which too much lies: what gravity presses on them, and nothing else bears.
+void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& tables, LoadedCloths& loaded) {
+  const auto gravity = vector_cast<double>(tables.desc.gravity);
+  const double size = length(gravity);
+  const std::vector<std::uint32_t> borne = find_borne(loaded.presses, gravity);
+  loaded.pressing_masses.assign(bearings.size(), 0);
+  for (const ClothPress& press : loaded.presses) {
+    if (std::binary_search(borne.begin(), borne.end(), press.body)) continue;
+    const std::size_t i = bearing_with(bearings, tables, press.particle);
+    double& mass = loaded.pressing_masses[i];
+    mass += press.share * (size > 0 ? std::max(0.0, dot(press.normal, gravity)) / size : 1);
+    if (mass > static_cast<double>(bearings[i].most_mass)) loaded.marks[i] = kPressed;
+  }
+}
+
+/// Drops what presses on other cloths, and counts the cloths that hold each body.
+void keep_presses_of_loaded(std::span<const ClothBearing> bearings, const state::Tables& tables,
+                            LoadedCloths& loaded) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> holds;  // Of which body which cloth.
+  std::erase_if(loaded.presses, [&](const ClothPress& press) {
+    const std::size_t i = bearing_with(bearings, tables, press.particle);
+    const bool is_loaded = i < bearings.size() && (loaded.marks[i] != 0 || bearings[i].has_heavy_points);
+    if (is_loaded) holds.emplace_back(press.body, i);
+    return !is_loaded;
+  });
+  std::sort(holds.begin(), holds.end());
+  holds.erase(std::unique(holds.begin(), holds.end()), holds.end());
+  for (ClothPress& press : loaded.presses) {
+    const auto of_body = [&](const auto& hold) { return hold.first == press.body; };
+    press.cloths = static_cast<int>(std::count_if(holds.begin(), holds.end(), of_body));
+  }
 }
 
 }  // namespace
@@ -71,29 +225,40 @@ std::vector<ClothBearing> find_bearings(const state::Tables& tables) {
   return bearings;
 }
 
+void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+                         LoadedCloths& loaded) {
+  loaded.presses.clear();
+  loaded.marks.assign(bearings.size(), 0);
+  loaded.pressing.clear();
+  if (bearings.empty()) return;
+  find_cloth_presses(tables, h, loaded.presses);
+  drop_wild_presses(bearings, tables, h, loaded);
+  drop_hooked_presses(tables, loaded);
+  share_out_bodies(tables, loaded.presses);
+  mark_pressed(bearings, tables, loaded);
+  for (const ClothPress& press : loaded.presses) {
+    const std::size_t i = bearing_with(bearings, tables, press.particle);
+    if (press.presses && press.gives_way && (loaded.marks[i] != 0 || bearings[i].has_heavy_points))
+      loaded.pressing.push_back({.object = bearings[i].object, .body = press.body});
+  }
+  std::sort(loaded.pressing.begin(), loaded.pressing.end());
+  loaded.pressing.erase(std::unique(loaded.pressing.begin(), loaded.pressing.end()), loaded.pressing.end());
+}
+
 void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables,
                         LoadedCloths& loaded) {
   loaded.cloths.clear();
   loaded.unsprung.clear();
-  loaded.marks.assign(bearings.size(), 0);
-  const auto look_at = [&](std::uint32_t particle) {
-    const auto behind = std::upper_bound(bearings.begin(), bearings.end(), particle,
-                                         [&](std::uint32_t row, const ClothBearing& bearing) {
-                                           return row < tables.objects[bearing.object].particles.first;
-                                         });
-    if (behind == bearings.begin()) return;
-    const ClothBearing& bearing = *std::prev(behind);
-    if (particle >= tables.objects[bearing.object].particles.end()) return;
-    const Real mass = mass_of(tables, particle);
-    // What does not give way holds the cloth, and is no load.
-    if (mass > bearing.most_mass &&
-        mass < static_cast<Real>(kMassThatHolds) * tables.particles.mass[particle])
-      loaded.marks[static_cast<std::size_t>(std::prev(behind) - bearings.begin())] = 1;
-  };
-  for (const std::uint32_t particle : loaded.lent) look_at(particle);
+  loaded.loaded_at_points.clear();
+  if (bearings.empty()) return;
+  mark_points(bearings, tables, loaded);
+  keep_presses_of_loaded(bearings, tables, loaded);
   for (std::size_t i = 0; i < bearings.size(); ++i) {
     if (loaded.marks[i] == 0 && !bearings[i].has_heavy_points) continue;
     const state::Rows points = tables.objects[bearings[i].object].particles;
+    loaded.loaded_at_points.resize(tables.objects.size(), 0);
+    if (bearings[i].has_heavy_points || loaded.marks[i] == kLoadedAtPoints)
+      loaded.loaded_at_points[bearings[i].object] = 1;
     loaded.cloths.push_back({.object = bearings[i].object,
                              .first = loaded.unsprung.size(),
                              .with_bends = bearings[i].bends_have_springs});
@@ -123,8 +288,12 @@ void solve_loaded_cloth(std::size_t i, int part, Real h, state::Tables& tables, 
   const LoadedCloth& cloth = loaded.cloths[i];
   const state::Deformable& object = tables.objects[cloth.object];
   const auto unsprung = std::span(loaded.unsprung).subspan(cloth.first, object.particles.count);
-  if (!loaded.solutions[static_cast<std::size_t>(part)].solve(object, unsprung, cloth.with_bends,
-                                                              static_cast<double>(h), tables))
+  const auto comes_before = [](const ClothPress& press, std::uint32_t row) { return press.particle < row; };
+  const auto first =
+      std::lower_bound(loaded.presses.begin(), loaded.presses.end(), object.particles.first, comes_before);
+  const auto end = std::lower_bound(first, loaded.presses.end(), object.particles.end(), comes_before);
+  if (!loaded.solutions[static_cast<std::size_t>(part)].solve(
+          object, unsprung, std::span(first, end), cloth.with_bends, static_cast<double>(h), tables))
     loaded.is_unconverged[i] = 1;
 }
 

@@ -2,7 +2,9 @@
 
 #include "hooke/math.h"
 
+#include "solver/cloth/cloth_presses.h"
 #include "solver/cloth/cloth_solution.h"
+#include "solver/soft/pass_masses.h"
 #include "state/tables.h"
 
 #include <cstddef>
@@ -23,6 +25,7 @@ struct ClothBearing {
   std::uint32_t object = 0;       ///< Row of the cloth.
   Real most_mass = kRigid;        ///< Largest mass of a point with what it bears [kg].
   bool has_heavy_points = false;  ///< Points of its own have more.
+  double link_length = 0;         ///< Mean length of its springs along edges [m].
   /// Its isometric bends have springs of their own (solver/soft/isometric_bending.h): both are to be solved
   /// in one, as passes over bends would count these springs twice.
   bool bends_have_springs = false;
@@ -38,19 +41,29 @@ struct LoadedCloth {
 struct LoadedCloths {
   /// Rows of the particles to which what presses on them, or what they are hooked to, has lent its mass.
   std::vector<std::uint32_t> lent;
-  std::vector<LoadedCloth> cloths;  ///< In the order of objects.
-  std::vector<Vec3> unsprung;       ///< What their points would do without springs [m/s].
-  std::vector<Vec3> sprung;         ///< Velocities of the points, set aside by begin_outside_forces [m/s].
+  std::vector<ClothPress> presses;     ///< In order of particles.
+  std::vector<PressingBody> pressing;  ///< What presses on points of loaded cloths, in ascending order.
+  std::vector<LoadedCloth> cloths;     ///< In the order of objects.
+  /// By object, 1 for those of these cloths that bear too much at single points; empty if there are none.
+  std::vector<std::uint8_t> loaded_at_points;
+  std::vector<Vec3> unsprung;  ///< What their points would do without springs [m/s].
+  std::vector<Vec3> sprung;    ///< Velocities of the points, set aside by begin_outside_forces [m/s].
   std::vector<ClothSolution> solutions;      ///< Memory, one for each part of a parallel loop.
   std::vector<std::uint8_t> is_unconverged;  ///< By cloth, 1 for what was not solved to the end.
-  std::vector<std::uint8_t> marks;           ///< Scratch: by bearing, whether it is loaded.
+  std::vector<std::uint8_t> marks;           ///< Scratch: by bearing, how it is loaded, or 0.
+  std::vector<double> pressing_masses;       ///< Scratch: by bearing, the mass that presses on it [kg].
 };
 
 /// Finds what each cloth can bear; call it when tables change.
 [[nodiscard]] std::vector<ClothBearing> find_bearings(const state::Tables& tables);
 
-/// Finds the cloths that are loaded in this substep, by points of their own or by LoadedCloths::lent, and
-/// notes the velocities of their points.
+/// Finds the cloths that are loaded by bodies which press on points, in this substep of length `h` [s], and
+/// which bodies these are. What is so fast that it would pass a link within the substep is not among them.
+void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+                         LoadedCloths& loaded);
+
+/// Adds those that are loaded by points of their own or by LoadedCloths::lent, and notes the velocities of
+/// the points of all. Call it after find_pressed_cloths.
 void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables,
                         LoadedCloths& loaded);
 

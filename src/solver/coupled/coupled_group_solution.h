@@ -32,8 +32,13 @@ struct WeakestSegment {
 
 class CoupledGroupSolution {
  public:
-  CoupledGroupSolution(double h, CoupledGroup& group, BodyContacts& contacts, state::Tables& tables)
-      : h_(h), b_(group), contacts_(contacts), t_(tables) {}
+  CoupledGroupSolution(const ParticleSubstep& substep, CoupledGroup& group, BodyContacts& contacts,
+                       state::Tables& tables)
+      : h_(static_cast<double>(substep.h)),
+        loaded_at_points_(substep.loaded_at_points),
+        b_(group),
+        contacts_(contacts),
+        t_(tables) {}
 
   void load_and_solve(const std::vector<state::VelocityRecord>& before,
                       std::vector<RopeSystem>& rope_systems);
@@ -65,6 +70,8 @@ class CoupledGroupSolution {
   [[nodiscard]] WeakestSegment weakest_segment(const std::vector<RopeSystem>& rope_systems) const;
   // Loading and checking.
   void load_points();
+  [[nodiscard]] std::span<const std::uint32_t> tethers_of(std::size_t point, std::size_t contact,
+                                                          std::size_t end) const;
   void load_hooks();
   bool stiffen();
   void solve_with_bounds();
@@ -208,6 +215,7 @@ class CoupledGroupSolution {
   }
 
   double h_;
+  std::span<const std::uint8_t> loaded_at_points_;  ///< As in ParticleSubstep.
   CoupledGroup& b_;
   BodyContacts& contacts_;
   state::Tables& t_;

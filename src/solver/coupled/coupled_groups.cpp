@@ -60,6 +60,16 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
   stiffen();
 }
 
+/// The tethers of a point whose contacts are [contact, end). A cloth with loads at single points has none:
+/// a load that tethers of points beside it stop here leaves the cloth, which has been solved without them.
+std::span<const std::uint32_t> CoupledGroupSolution::tethers_of(std::size_t point, std::size_t contact,
+                                                                std::size_t end) const {
+  if (contact < end && !loaded_at_points_.empty() && loaded_at_points_[t_.contacts.object[contact]] != 0)
+    return {};
+  const std::uint32_t first = b_.first_tether[point];
+  return std::span(b_.tethers).subspan(first, b_.first_tether[point + 1] - first);
+}
+
 /// All contacts of a group's points are its rows, also those with the ground: what a hook pulls on would
 /// otherwise be stopped afterwards, whatever the hook holds.
 void CoupledGroupSolution::load_points() {
@@ -76,13 +86,11 @@ void CoupledGroupSolution::load_points() {
     if (!(b_.ropes.nodes.back().w > 0) || (first == end && !has_coupled_contact(node))) continue;
     std::fill(t_.contacts.coupled.begin() + static_cast<std::ptrdiff_t>(first),
               t_.contacts.coupled.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1});
-    const std::span<const std::uint32_t> tethers =
-        std::span(b_.tethers).subspan(b_.first_tether[i], b_.first_tether[i + 1] - b_.first_tether[i]);
     load_point_contact_rows({.node = b_.ropes.nodes.back(),
                              .index = node,
                              .first = first,
                              .end = end,
-                             .tethers = tethers,
+                             .tethers = tethers_of(i, first, end),
                              .heaviest = heaviest_in_contact(node)},
                             h_, t_, b_.ropes.contact_rows);
   }
@@ -439,7 +447,7 @@ void solve_coupled_group(const std::vector<state::VelocityRecord>& before, const
                          state::Tables& tables) {
   group.factored = 0;
   group.giving.clear();
-  CoupledGroupSolution solution(static_cast<double>(substep.h), group, contacts, tables);
+  CoupledGroupSolution solution(substep, group, contacts, tables);
   solution.load_and_solve(before, rope_systems);
   for (int round = 0; solution.gives_way(round, rope_systems); ++round)
     solution.load_and_solve(before, rope_systems);

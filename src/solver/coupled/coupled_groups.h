@@ -259,6 +259,9 @@ struct ParticleSubstep {
   Real h = Real(0);     ///< Its length [s].
   double end_time = 0;  ///< Time of the world at its end [s].
   bool first = false;   ///< It is the first of its step.
+  /// By object, not 0 for cloths that are solved as a whole with loads at single points
+  /// (solver/cloth/loaded_cloths.h).
+  std::span<const std::uint8_t> loaded_at_points = {};
 };
 
 /// Solves for the velocities of everything in a coupled group in a particle substep. `before` holds the

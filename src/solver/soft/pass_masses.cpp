@@ -12,9 +12,11 @@ namespace {
 /// Calls `visit(row, count)` with each row that lends mass, and the number of those that have its body.
 template <class Visit>
 void for_lending_rows(std::span<const state::ElementContact> passes,
-                      std::span<const std::uint8_t> solved_whole, const state::Tables& t, Visit visit) {
+                      std::span<const std::uint8_t> solved_whole, std::span<const PressingBody> pressing,
+                      const state::Tables& t, Visit visit) {
   const auto lends = [&](const state::ElementContact& row) {
-    return state::gives_way(t.bodies, row.body) && solved_whole[row.object] == 0;
+    return state::gives_way(t.bodies, row.body) && solved_whole[row.object] == 0 &&
+           !std::binary_search(pressing.begin(), pressing.end(), PressingBody{row.object, row.body});
   };
   std::vector<std::uint32_t> bodies;
   for (const state::ElementContact& row : passes) {
@@ -45,10 +47,10 @@ Real most_yielding(const state::Bodies& bodies, std::uint32_t body, Vec3 lever) 
 }  // namespace
 
 void share_pass_masses(std::span<const state::ElementContact> passes,
-                       std::span<const std::uint8_t> solved_whole, state::Tables& t,
-                       std::vector<PassMass>& shares) {
+                       std::span<const std::uint8_t> solved_whole, std::span<const PressingBody> pressing,
+                       state::Tables& t, std::vector<PassMass>& shares) {
   shares.clear();
-  for_lending_rows(passes, solved_whole, t, [&](const state::ElementContact& row, Real count) {
+  for_lending_rows(passes, solved_whole, pressing, t, [&](const state::ElementContact& row, Real count) {
     for (std::uint32_t k = 0; k < row.count; ++k) {
       if (!(row.weight[k] > Real(0)) || !(t.particles.velocity[row.particle[k]].inverse_mass > Real(0)))
         continue;

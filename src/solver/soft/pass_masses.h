@@ -4,6 +4,7 @@
 
 #include "state/tables.h"
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,6 +15,14 @@
 /// drag points along, and stretch what it hangs in without being stopped by it.
 
 namespace hooke::solver {
+
+/// A body that presses on points of a cloth which is solved with it.
+struct PressingBody {
+  std::uint32_t object = 0;  ///< Row of the cloth.
+  std::uint32_t body = 0;
+
+  friend auto operator<=>(const PressingBody&, const PressingBody&) = default;
+};
 
 /// A point that has got a body's mass, or a share of it.
 struct PassMass {
@@ -28,10 +37,11 @@ struct PassMass {
 /// Gives the points of `passes` what resists of the body that presses there along the direction in which it
 /// resists least, divided by the number of rows that have the body. So all impulses together turn the body no
 /// farther than any point wants it: with the mass that resists along the normal energy grew without bound.
-/// The two go on with their common momentum. Points of objects marked in `solved_whole` get nothing.
+/// The two go on with their common momentum. Points of objects marked in `solved_whole` get nothing, nor do
+/// those that are solved with the body, which `pressing` lists in ascending order.
 void share_pass_masses(std::span<const state::ElementContact> passes,
-                       std::span<const std::uint8_t> solved_whole, state::Tables& tables,
-                       std::vector<PassMass>& shares);
+                       std::span<const std::uint8_t> solved_whole, std::span<const PressingBody> pressing,
+                       state::Tables& tables, std::vector<PassMass>& shares);
 
 /// Takes the masses away. A point keeps its velocity; each body gets the impulse that has changed the
 /// velocity of its share, at the point.
