@@ -143,8 +143,9 @@ void stop_body_passes(WorldData& world, Real h) {
 
 void hold_back_passes(WorldData& world, Real h) {
   if (world.frame.bodies_quarantined) return;  // These are not where their substep began.
-  const collision::HeldBack held = collision::hold_back_passes(*world.pool, h, world.frame.body_manifolds,
-                                                               world.frame.body_passes, world.tables);
+  const collision::HeldBack held =
+      collision::hold_back_passes(*world.pool, h, world.frame.surfaces.stiff, world.frame.body_manifolds,
+                                  world.frame.body_passes, world.tables);
   world.frame.passes_held_back += held.moved;
   world.frame.passes_left += held.left;
 }

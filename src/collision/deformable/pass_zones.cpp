@@ -17,8 +17,10 @@ namespace {
 /// Points and bodies that go on as one.
 class PassZones {
  public:
-  PassZones(state::Tables& tables, BodyPassFinder& finder, state::BodyManifolds& manifolds, Real h)
+  PassZones(state::Tables& tables, std::span<const std::uint8_t> solved_whole, BodyPassFinder& finder,
+            state::BodyManifolds& manifolds, Real h)
       : t_(tables),
+        whole_(solved_whole.begin(), solved_whole.end()),
         f_(finder),
         manifolds_(manifolds),
         h_(h),
@@ -41,6 +43,7 @@ class PassZones {
         sets_.merge(e.particle[k], body);
       }
     }
+    join_solids();
     return any;
   }
 
@@ -66,6 +69,7 @@ class PassZones {
       }
     }
     for (const state::Hook& hook : t_.hooks) any = add_hook(hook) || any;
+    join_solids();
     return any;
   }
 
@@ -149,6 +153,22 @@ class PassZones {
     brought_.resize(is_in_.size());
     brought_[member] = describe(member);
     return true;
+  }
+
+  /// Adds all points of each solid that is solved as a whole and has a member.
+  void join_solids() {
+    for (std::uint32_t i = 0; i < whole_.size(); ++i) {
+      if (whole_[i] == 0) continue;
+      const state::Rows points = t_.objects[i].particles;
+      std::uint32_t first = points.first;
+      while (first < points.end() && is_in_[first] == 0) ++first;
+      if (first == points.end()) continue;
+      for (std::uint32_t p = points.first; p < points.end(); ++p) {
+        include(p);
+        sets_.merge(first, p);
+      }
+      whole_[i] = 0;
+    }
   }
 
   /// Adds what a point has been moved into, as far as it does not give way. Returns whether that was new.
@@ -382,6 +402,7 @@ class PassZones {
   }
 
   state::Tables& t_;
+  std::vector<std::uint8_t> whole_;  ///< By object: it is solved as a whole, and is in no zone yet.
   BodyPassFinder& f_;
   state::BodyManifolds& manifolds_;
   Real h_;
@@ -396,14 +417,14 @@ class PassZones {
 
 }  // namespace
 
-HeldBack hold_back_passes(parallel::ThreadPool& pool, Real h, state::BodyManifolds& manifolds,
-                          BodyPassFinder& finder, state::Tables& t) {
+HeldBack hold_back_passes(parallel::ThreadPool& pool, Real h, std::span<const std::uint8_t> solved_whole,
+                          state::BodyManifolds& manifolds, BodyPassFinder& finder, state::Tables& t) {
   look_at_body_passes(pool, t, h, finder);
   if (finder.suspects.empty()) {
     end_body_passes(false, finder);
     return {};
   }
-  PassZones zones(t, finder, manifolds, h);
+  PassZones zones(t, solved_whole, finder, manifolds, h);
   while (!finder.suspects.empty() && zones.add()) {
     do {
       zones.move();

@@ -8,6 +8,7 @@
 #include "state/tables.h"
 
 #include <cstdint>
+#include <span>
 
 namespace hooke::collision {
 
@@ -21,8 +22,9 @@ struct HeldBack {
 /// that have come through each other: they go on as one, with their common momentum, or with what moves as
 /// told (rigid impact zones after Provot 1997, without their rotation). What meets such a zone becomes part
 /// of it, and so does a body that another is moved into, until nothing passes. Only what is pressed between
-/// two that both move as told may be left.
-HeldBack hold_back_passes(parallel::ThreadPool& pool, Real h, state::BodyManifolds& manifolds,
-                          BodyPassFinder& finder, state::Tables& tables);
+/// two that both move as told may be left. Of objects that `solved_whole` marks, by row, all points belong to
+/// a zone that has one of them: a point that is moved by itself strains what is stiff.
+HeldBack hold_back_passes(parallel::ThreadPool& pool, Real h, std::span<const std::uint8_t> solved_whole,
+                          state::BodyManifolds& manifolds, BodyPassFinder& finder, state::Tables& tables);
 
 }  // namespace hooke::collision
