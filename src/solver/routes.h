@@ -93,9 +93,10 @@
 /// the bodies on its points (solver/cloth/loaded_cloths.h, docs/decisions/0049-loaded-cloths.md).
 /// StepReport::cloths_unconverged counts what used up its work.
 ///
-/// Solids of which a tetrahedron is stiff are solved as a whole, with what presses on them, what they are
-/// hooked to and each other (solver/solid/stiff_solution.h, docs/decisions/0037-stiff-solids-as-a-whole.md);
-/// all others are swept once.
+/// Solids of which a tetrahedron is stiff are solved as a whole, with what presses on their points and faces,
+/// what they are hooked to and each other (solver/solid/stiff_solution.h,
+/// docs/decisions/0037-stiff-solids-as-a-whole.md, docs/decisions/0051-faces-of-stiff-solids.md); all others
+/// are swept once.
 ///
 /// Ropes alone are rope systems, solved several side by side (solver/rope/rope_systems.h,
 /// docs/decisions/0012-rope-lanes.md). Ropes that hold or touch something that gives way belong to a coupled

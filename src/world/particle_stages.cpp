@@ -18,6 +18,7 @@
 #include "state/rope_chains.h"
 #include "world/events.h"
 #include "world/force_stages.h"
+#include "world/point_contact_stages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +120,7 @@ void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing,
     solver::note_pressed_points(tables, pressing, h, *part);
   }
   pass(solver::linearize_tetrahedra);
-  solver::prepare_stiff_rows(tables.particles, system);
+  solver::prepare_stiff_rows(tables, system);
   solver::prepare_ties(tables, system);
   bool is_last = false;
   for (int round = 1;; ++round) {
@@ -396,7 +397,9 @@ void solve_solids(WorldData& world, Real h) {
   std::vector<int>& pressing = world.frame.pressing_points;
   if (world.frame.surfaces.any_stiff) solver::count_pressing_points(tables, h, pressing);
   solver::JoinedSolids& joined = world.frame.joined_solids;
-  solver::list_joined_solids(tables, world.frame.surfaces, h, world.derived.soft, joined);
+  find_pressed_faces(world, h);
+  std::vector<state::ElementContact>& faces = world.frame.pressed_faces;
+  solver::list_joined_solids(tables, world.frame.surfaces, faces, h, world.derived.soft, joined);
   for (const solver::JoinedSolids::System& system : joined.systems)
     solve_stiff_solids(tables, pressing, h, Division{world.pool.get()}, joined.at(system));
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
@@ -409,6 +412,9 @@ void solve_solids(WorldData& world, Real h) {
       solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
     }
   });
+  for (const solver::JoinedSolids::System& system : joined.systems)
+    solver::release_stiff_rows(h, joined.at(system), faces, tables);
+  add_pass_impulses(world, h, faces);
   for (solver::SoftGroup& group : world.derived.soft.groups)
     solver::release_pressed_points(h, group.tetrahedra, tables);
   for_matched(world, h, solver::match_shape);

@@ -112,6 +112,13 @@ void solve_point_contacts(WorldData& world, Real h) {
     solver::settle_cloth_presses(world.frame.loaded_cloths.presses, h, t.contacts);
 }
 
+void find_pressed_faces(WorldData& world, Real h) {
+  world.frame.pressed_faces.clear();
+  if (!world.frame.surfaces.any_stiff) return;
+  collision::find_pressed_faces(*world.pool, world.tables, pass_substep(world, h), world.frame.body_passes,
+                                world.frame.pressed_faces);
+}
+
 void share_passing_masses(WorldData& world, Real h, bool first) {
   state::Tables& t = world.tables;
   collision::BodyPassFinder& finder = world.frame.body_passes;

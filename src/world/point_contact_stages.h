@@ -20,6 +20,10 @@ void update_point_contacts(WorldData& world, Real h);
 /// pass through each other.
 void solve_point_contacts(WorldData& world, Real h);
 
+/// Finds the faces of stiff solids on which bodies press in a particle substep of `h` [s], which belong to
+/// the solution of these solids.
+void find_pressed_faces(WorldData& world, Real h);
+
 /// Adds the mass of bodies that press on faces and segments to their points while elastic rows are solved, so
 /// that these stop the body and not only light points. What presses is what was stopped in the particle
 /// substep before; in the `first` one of a step, what would pass within `h` [s].

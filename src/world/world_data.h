@@ -177,10 +177,11 @@ struct Frame {
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
   collision::BodyPassFinder body_passes;
-  state::BodyManifolds body_manifolds;        ///< Valid for one step.
-  solver::BackingContacts backing_contacts;   ///< Valid for one particle substep.
-  std::vector<solver::PassMass> pass_masses;  ///< Valid for one particle substep.
-  solver::LoadedCloths loaded_cloths;         ///< Valid for one particle substep.
+  std::vector<state::ElementContact> pressed_faces;  ///< Of stiff solids, by bodies; as below.
+  state::BodyManifolds body_manifolds;               ///< Valid for one step.
+  solver::BackingContacts backing_contacts;          ///< Valid for one particle substep.
+  std::vector<solver::PassMass> pass_masses;         ///< Valid for one particle substep.
+  solver::LoadedCloths loaded_cloths;                ///< Valid for one particle substep.
   std::uint32_t cloths_unconverged = 0;  ///< Solutions of these that did not come to an end in this step.
   std::uint32_t passes_held_back = 0;    ///< Points and bodies that hold_back_passes has moved in this step.
   std::uint32_t passes_left = 0;         ///< Elements that shapes have come through all the same.

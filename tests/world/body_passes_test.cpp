@@ -325,6 +325,70 @@ TEST_CASE("a jelly that falls on thin posts and edges does not intersect them") 
   CHECK(crossings_in(room, 300) == 0);
 }
 
+/// A plate that is solved as a whole, with its top at height 0.
+SolidDesc stiff_plate(Real young_modulus) {
+  SolidDesc desc;
+  desc.cells = {3, 1, 3};
+  desc.size = {Real(0.9), Real(0.1), Real(0.9)};
+  desc.position = {0, -0.05, 0};
+  desc.young_modulus = young_modulus;
+  desc.poisson_ratio = Real(0.3);
+  return desc;
+}
+
+TEST_CASE("what falls between the points of a stiff plate on the ground gains no energy") {
+  for (const Real young_modulus : {Real(3e6), Real(1e8)}) {
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      CAPTURE(young_modulus);
+      CAPTURE(seed);
+      Random random = {.state = 4099U * seed};
+      World world = make_world(test::without_air());
+      take(world.add_body({.shape = {.kind = ShapeKind::kHalfSpace}, .position = {0, -0.104, 0}}));
+      take(world.add_solid(stiff_plate(young_modulus)));
+      const BodyId body = take(world.add_body(
+          {.kind = BodyKind::kDynamic,
+           .shape = {.kind = ShapeKind::kBox, .half_extents = {Real(0.1), Real(0.06), Real(0.03)}},
+           .position = {random.between(-0.2, 0.2), 0.3, random.between(-0.2, 0.2)},
+           .rotation = normalize(Quat{static_cast<Real>(random.between(-1, 1)),
+                                      static_cast<Real>(random.between(-1, 1)), Real(0.3), Real(0.5)}),
+           .velocity = {static_cast<Real>(random.between(-1, 1)), Real(-4), Real(0)},
+           .mass = static_cast<Real>(random.log_between(0.5, 50))}));
+      // Energy counts from the level of the lowest points, so that all of it is what may be lost.
+      const double mass = d(world.mass(body)) + 81;
+      const auto energy = [&] { return world.measure().energy.total() + mass * 9.81 * 0.104; };
+      const double before = energy();
+      for (int i = 0; i < 40; ++i) {
+        REQUIRE(world.step(kFrame).healthy());
+        CHECK(energy() < 1.01 * before);
+      }
+      CHECK(world.pose(body).position.y > 0);
+    }
+  }
+}
+
+TEST_CASE("a box that hits the face of a stiff plate in free space leaves all momentum as it was") {
+  for (const Real young_modulus : {Real(3e6), Real(1e8)}) {
+    CAPTURE(young_modulus);
+    World world = make_world(test::sleepless_space(8));
+    take(world.add_solid(stiff_plate(young_modulus)));
+    take(world.add_body(
+        {.kind = BodyKind::kDynamic,
+         .shape = {.kind = ShapeKind::kBox, .half_extents = {Real(0.05), Real(0.05), Real(0.05)}},
+         .position = {0.05, 0.2, 0.1},
+         .rotation = normalize(Quat{Real(0.3), Real(0.1), Real(0.2), Real(1)}),
+         .velocity = {Real(1), Real(-5), Real(0)},
+         .mass = Real(20)}));
+    const Measurement before = world.measure();
+    for (int i = 0; i < 30; ++i) {
+      REQUIRE(world.step(kFrame).healthy());
+      const Measurement now = world.measure();
+      CHECK(length(now.momentum - before.momentum) < 2e-4 * length(before.momentum));
+      CHECK(now.energy.total() < 1.001 * before.energy.total());
+    }
+    CHECK(world.measure().energy.total() < 0.99 * before.energy.total());
+  }
+}
+
 TEST_CASE("passes have the same bits with any number of workers and after a restore") {
   test::check_same_bits({}, [](World& world) {
     take(world.add_cloth(held_sheet(13)));

@@ -496,6 +496,38 @@ bool is_at_point(const ElementMeeting& meeting) {
   return *std::max_element(meeting.weight.begin(), meeting.weight.end()) > kPointShare;
 }
 
+/// Whether a face of an object that is solved as a whole may be pressed by a shape in this substep.
+bool may_be_pressed(const state::Tables& t, Real h, const Passes& finder, const Passes::Pair& pair,
+                    const Passes::Candidate& c) {
+  if (c.crossed) return false;
+  const Passes::Element& e = finder.elements[c.element];
+  const MovingElement element = element_ahead(t, h, finder, e);
+  const Real longest = finder.objects[pair.object].longest;
+  const Real farthest = relative_displacement(element, pair.shape);
+  if (farthest > kSlowFaceShare * longest) return false;
+  const Real near = nearness_of(t, e) + kNearFaceShare * longest;
+  if (c.free > pair.used + near + farthest) return false;
+  return c.normal == Vec3{} || !(separation(element, pair.shape, c.normal) > near + farthest);
+}
+
+/// Looks at a face that may be pressed exactly.
+void find_pressed_face(const state::Tables& t, const PassSubstep& substep, const Passes& finder,
+                       const Passes::Pair& pair, const Passes::Candidate& c, Passes::Found& found) {
+  const Passes::Element& e = finder.elements[c.element];
+  MovingElement element = element_ahead(t, substep.h, finder, e);
+  MovingShape shape = pair.shape;
+  bring_near(element, shape);
+  const Real near = nearness_of(t, e);
+  const ElementMeeting meeting =
+      meet(element, shape, near + kNearFaceShare * finder.objects[pair.object].longest);
+  if (!meeting.met || meeting.crossed || meeting.normal == Vec3{}) return;
+  if (pair.spans && is_at_point(meeting)) return;
+  found.met = true;
+  found.row = row_of(t, finder, pair, c, meeting, near);
+  found.row.lever = meeting.place - (shape.pivot + meeting.share * shape.displacement);
+  found.row.separation += gap_at_start(element, shape, meeting, found.row.lever);
+}
+
 /// Looks at a suspect exactly.
 void find_pass(const state::Tables& t, const PassSubstep& substep, const Passes& finder,
                const Passes::Pair& pair, Passes::Candidate& c, Passes::Found& found) {
@@ -611,6 +643,26 @@ bool sweep_body_passes(parallel::ThreadPool& pool, const state::Tables& t, const
     find_pass(t, substep, finder, pair, c, finder.found[i]);
   });
   return append_passes(finder);
+}
+
+void find_pressed_faces(parallel::ThreadPool& pool, const state::Tables& t, const PassSubstep& substep,
+                        BodyPassFinder& finder, std::vector<state::ElementContact>& faces) {
+  faces.clear();
+  const auto is_of_whole = [&](const Passes::Pair& pair) { return is_whole(substep, pair.object); };
+  if (std::none_of(finder.pairs.begin(), finder.pairs.end(), is_of_whole)) return;
+  foresee_motion(t, substep.h, finder);
+  finder.flags.assign(finder.candidates.size(), 0);
+  for_candidates(pool, finder, [&](const Passes::Pair& pair, const Passes::Candidate& c, std::uint32_t row) {
+    finder.flags[row] = is_of_whole(pair) && may_be_pressed(t, substep.h, finder, pair, c) ? 1 : 0;
+  });
+  list_suspects(finder);
+  finder.found.assign(finder.suspects.size(), {});
+  for_suspects(pool, finder, [&](std::size_t i, const Passes::Pair& pair, const Passes::Candidate& c) {
+    find_pressed_face(t, substep, finder, pair, c, finder.found[i]);
+  });
+  for (const Passes::Found& found : finder.found) {
+    if (found.met) faces.push_back(found.row);
+  }
 }
 
 void look_at_body_passes(parallel::ThreadPool& pool, const state::Tables& t, Real h, BodyPassFinder& finder) {

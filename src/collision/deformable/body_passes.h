@@ -123,6 +123,13 @@ void begin_body_passes(const state::Tables& tables, BodyPassFinder& finder);
 bool sweep_body_passes(parallel::ThreadPool& pool, const state::Tables& tables, const PassSubstep& substep,
                        BodyPassFinder& finder);
 
+/// Lists the faces of objects that are solved as a whole and the shapes that press on them within this
+/// substep, or are nearly so near that stress may press them together, as rows that keep the two apart. Left
+/// out is what moves by more than a share of an edge (kSlowFaceShare): where that will touch is not known
+/// before it has been stopped. Changes nothing that sweeps look at.
+void find_pressed_faces(parallel::ThreadPool& pool, const state::Tables& tables, const PassSubstep& substep,
+                        BodyPassFinder& finder, std::vector<state::ElementContact>& faces);
+
 /// After points and bodies have moved by a particle substep of `h` [s]: lists in `suspects` and
 /// `suspect_pair` the candidates that have come through each other, or nearer than they may for certain.
 /// Looks at those that have rows, and at all of a pair that has not moved as it was swept.

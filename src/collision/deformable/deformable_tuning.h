@@ -110,6 +110,14 @@ inline constexpr Real kPressedOverlap = Real(1e-4);
 /// the contact of the point [ratio]. Chosen by hand: a second push made 4 % of the energy of 10 t on a jelly.
 inline constexpr Real kPointShare = Real(0.8);
 
+/// Distance at which a shape may come to press on a face of a solid that is solved as a whole, beyond the
+/// distance that they keep, over the longest edge [ratio]. Chosen by hand.
+inline constexpr Real kNearFaceShare = Real(0.02);
+
+/// How far a shape may move in a particle substep relative to such a face, over the longest edge, for the
+/// contact to belong to the solution [ratio]. What is faster is stopped after it.
+inline constexpr Real kSlowFaceShare = Real(0.2);
+
 /// Share of that distance that they keep for certain, or the substep is taken back [ratio].
 inline constexpr Real kPassedBodyLeast = Real(0.2);
 

@@ -1,5 +1,6 @@
 #include "solver/solid/stiff_rows.h"
 
+#include "solver/body/body_motion.h"
 #include "solver/solid/solid_tuning.h"
 
 #include <algorithm>
@@ -17,19 +18,44 @@ double first_drag(const StiffRow& row, DVec3 u, double lacks) {
   return row.friction > 0 && sliding <= row.friction * lacks ? row.stiffness : 0;
 }
 
+/// With what mass the points of a row and its body resist along the normal, each by itself [kg].
+template <class OfStress>
+double resisting_mass(const state::Tables& t, const StiffSystem& system, const StiffRow& row,
+                      OfStress of_stress) {
+  const double mass = row.corners.resisting_mass(t.particles, system.parts, of_stress);
+  if (row.other.mover == StiffEnd::kNone || !(mass > 0)) return mass;
+  const Real mobility = inverse_mass_at(t.bodies, row.other.body, vector_cast<Real>(row.normal),
+                                        vector_cast<Real>(row.other.lever));
+  return 1 / (1 / mass + static_cast<double>(mobility) / row.other.share);
+}
+
+/// A share of how a row resists in all directions [kg].
+Symmetric3<double> resistance_of(const StiffRow& row, double share) {
+  const DVec3 n = row.normal;
+  const double along = share * (row.stiffness - row.drag);
+  const double all = share * row.drag;
+  return {along * n.x * n.x + all, along * n.x * n.y, along * n.x * n.z,
+          along * n.y * n.y + all, along * n.y * n.z, along * n.z * n.z + all};
+}
+
+/// The velocity at which the sides part after the solution [m/s].
+DVec3 parting(const StiffSystem& system, const StiffRow& row) {
+  return row.before +
+         row.other.leaving(system.parts, row.corners, &StiffSolution::change, &HoldingBody::change);
+}
+
 }  // namespace
 
-void prepare_stiff_rows(const state::Particles& particles, const StiffSystem& system) {
+void prepare_stiff_rows(const state::Tables& t, const StiffSystem& system) {
   for (StiffRow& row : system.rows) {
-    const double mass = row.corners.resisting_mass(
-        particles, system.parts,
-        [&](const Symmetric3<double>& stress) { return dot(row.normal, stress * row.normal); });
+    take_mover(t.bodies, system.parts, row.corners, row.other);
+    const double mass = resisting_mass(t, system, row, [&](const Symmetric3<double>& stress) {
+      return dot(row.normal, stress * row.normal);
+    });
     row.stiffness = kStiffRowShare * mass;
     // Overlaps leave slowly where stress resists them: moving a point strains what is stiff.
     if (row.least_speed > 0 && mass > 0) {
-      row.least_speed *= row.corners.resisting_mass(particles, system.parts, [](const Symmetric3<double>&) {
-        return 0.0;
-      }) / mass;
+      row.least_speed *= resisting_mass(t, system, row, [](const Symmetric3<double>&) { return 0.0; }) / mass;
     }
     const double lacks = row.least_speed - dot(row.normal, row.before);
     row.pushes = row.stiffness > 0 && lacks > 0;
@@ -42,16 +68,14 @@ void prepare_stiff_rows(const state::Particles& particles, const StiffSystem& sy
 void add_row_diagonals(const StiffSystem& system) {
   for (const StiffRow& row : system.rows) {
     if (!row.pushes) continue;
-    const DVec3 n = row.normal;
     for (std::size_t k = 0; k < row.corners.count; ++k) {
       const double share = row.corners.weight[k] * row.corners.weight[k];
-      const double along = share * (row.stiffness - row.drag);
-      const double all = share * row.drag;
       Symmetric3<double>& to =
           system.parts[row.corners.part[k]]->stiff.contact_diagonal[row.corners.point[k]];
-      to = to + Symmetric3<double>{along * n.x * n.x + all, along * n.x * n.y, along * n.x * n.z,
-                                   along * n.y * n.y + all, along * n.y * n.z, along * n.z * n.z + all};
+      to = to + resistance_of(row, share);
     }
+    if (HoldingBody* mover = row.other.mover_of(system.parts, row.corners))
+      add_mass(resistance_of(row, 1), row.other.lever, mover->tied);
   }
 }
 
@@ -59,15 +83,17 @@ void add_row_forces(const StiffSystem& system) {
   for (const StiffRow& row : system.rows) {
     if (!row.pushes) continue;
     const DVec3 given = (row.carried + row.stiffness * row.least_speed) * row.normal;
-    row.corners.push(system.parts, given - row.resistance(row.before), &StiffSolution::residual);
+    row.other.push(system.parts, row.corners, given - row.resistance(row.before), &StiffSolution::residual,
+                   &HoldingBody::residual);
   }
 }
 
 void resist_stiff_rows(const StiffSystem& system) {
   for (const StiffRow& row : system.rows) {
     if (!row.pushes) continue;
-    const DVec3 u = row.corners.sum(system.parts, &StiffSolution::direction);
-    row.corners.push(system.parts, row.resistance(u), &StiffSolution::image);
+    const DVec3 u =
+        row.other.leaving(system.parts, row.corners, &StiffSolution::direction, &HoldingBody::direction);
+    row.other.push(system.parts, row.corners, row.resistance(u), &StiffSolution::image, &HoldingBody::image);
   }
 }
 
@@ -75,7 +101,7 @@ bool renew_stiff_rows(bool may_hold, const StiffSystem& system) {
   bool any = false;
   for (StiffRow& row : system.rows) {
     if (!(row.stiffness > 0)) continue;
-    const DVec3 u = row.before + row.corners.sum(system.parts, &StiffSolution::change);
+    const DVec3 u = parting(system, row);
     const double lacks = row.least_speed - dot(row.normal, u);
     if (!row.pushes) {
       if (!may_hold || !(lacks > 0)) continue;
@@ -111,6 +137,21 @@ bool renew_stiff_rows(bool may_hold, const StiffSystem& system) {
     }
   }
   return any;
+}
+
+void release_stiff_rows(Real h, const StiffSystem& system, std::span<state::ElementContact> faces,
+                        state::Tables& t) {
+  for (const StiffRow& row : system.rows) {
+    if (row.face == StiffRow::kNone || !row.pushes) continue;
+    const DVec3 given = (row.carried + row.stiffness * row.least_speed) * row.normal;
+    const DVec3 impulse = given - row.resistance(parting(system, row));
+    const double along = dot(row.normal, impulse);
+    state::ElementContact& face = faces[row.face];
+    face.normal_force = static_cast<Real>(std::max(along, 0.0)) / h;
+    face.friction_force = (Real(1) / h) * vector_cast<Real>(impulse - along * row.normal);
+    if (row.other.mover != StiffEnd::kNone)
+      push_body(row.other.body, vector_cast<Real>(-impulse), vector_cast<Real>(row.other.lever), t.bodies);
+  }
 }
 
 }  // namespace hooke::solver

@@ -350,7 +350,7 @@ void aim(const state::Particles& particles, StiffSystem& system) {
   add_row_forces(system);
   add_tie_forces(system);
   for (const StiffTie& tie : system.ties) {
-    if (tie.mover == StiffTie::kNone) system.parts[tie.points.part[0]]->stiff.is_anchored = true;
+    if (tie.other.mover == StiffEnd::kNone) system.parts[tie.points.part[0]]->stiff.is_anchored = true;
   }
   system.size = sum_of_parts(system, precondition);
   if (!(system.first_size > 0)) system.first_size = system.size;

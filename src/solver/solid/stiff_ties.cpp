@@ -12,34 +12,10 @@ namespace {
 
 using math::Symmetric3;
 
-/// The solution that has the body of a hook, that of its first point's part.
-StiffSolution& solution_of(const StiffSystem& system, const StiffTie& tie) {
-  return system.parts[tie.points.part[0]]->stiff;
-}
-
-/// The body that a hook holds, null if the other end does not give way.
-HoldingBody* mover_of(const StiffSystem& system, const StiffTie& tie) {
-  return tie.mover == StiffTie::kNone ? nullptr : &solution_of(system, tie).holders[tie.mover];
-}
-
-/// The velocity at which the points leave the other end, in a vector and the six numbers of bodies.
-DVec3 leaving(const StiffSystem& system, const StiffTie& tie, std::vector<double> StiffSolution::*of_points,
-              HoldingBody::Six HoldingBody::*of_bodies) {
-  const DVec3 u = tie.points.sum(system.parts, of_points);
-  const HoldingBody* mover = mover_of(system, tie);
-  return mover != nullptr ? u - velocity_at(mover->*of_bodies, tie.lever) : u;
-}
-
-/// Adds an impulse to the points of a hook, and the opposite one to the body.
-void push_ends(const StiffSystem& system, const StiffTie& tie, DVec3 impulse,
-               std::vector<double> StiffSolution::*to_points, HoldingBody::Six HoldingBody::*to_bodies) {
-  tie.points.push(system.parts, impulse, to_points);
-  if (HoldingBody* mover = mover_of(system, tie)) add_impulse(-impulse, tie.lever, mover->*to_bodies);
-}
-
 DVec3 impulse_of(const StiffSystem& system, const StiffTie& tie) {
-  return tie.carried -
-         tie.stiffness * (tie.before + leaving(system, tie, &StiffSolution::change, &HoldingBody::change));
+  const DVec3 change =
+      tie.other.leaving(system.parts, tie.points, &StiffSolution::change, &HoldingBody::change);
+  return tie.carried - tie.stiffness * (tie.before + change);
 }
 
 }  // namespace
@@ -67,13 +43,7 @@ void prepare_ties(const state::Tables& t, const StiffSystem& system) {
                                            return (stress.xx + stress.yy + stress.zz) / 3;
                                          });
     tie.carried = {};
-    tie.mover = StiffTie::kNone;
-    if (tie.body == StiffTie::kNone) continue;
-    StiffSolution& stiff = solution_of(system, tie);
-    if (stiff.find_holder(tie.body) == nullptr)
-      stiff.holders.push_back(holding_body(t.bodies, tie.body, tie.share));
-    const HoldingBody* holder = stiff.find_holder(tie.body);
-    if (holder->moves) tie.mover = static_cast<std::uint32_t>(holder - stiff.holders.data());
+    take_mover(t.bodies, system.parts, tie.points, tie.other);
   }
 }
 
@@ -84,22 +54,23 @@ void add_tie_diagonals(const StiffSystem& system) {
       Symmetric3<double>& to = system.parts[points.part[k]]->stiff.contact_diagonal[points.point[k]];
       to = to + Symmetric3<double>::diagonal(points.weight[k] * points.weight[k] * tie.stiffness);
     }
-    if (HoldingBody* mover = mover_of(system, tie))
-      add_mass(Symmetric3<double>::diagonal(tie.stiffness), tie.lever, mover->tied);
+    if (HoldingBody* mover = tie.other.mover_of(system.parts, points))
+      add_mass(Symmetric3<double>::diagonal(tie.stiffness), tie.other.lever, mover->tied);
   }
 }
 
 void add_tie_forces(const StiffSystem& system) {
   for (const StiffTie& tie : system.ties) {
-    push_ends(system, tie, tie.carried - tie.stiffness * tie.before, &StiffSolution::residual,
-              &HoldingBody::residual);
+    tie.other.push(system.parts, tie.points, tie.carried - tie.stiffness * tie.before,
+                   &StiffSolution::residual, &HoldingBody::residual);
   }
 }
 
 void resist_ties(const StiffSystem& system) {
   for (const StiffTie& tie : system.ties) {
-    const DVec3 u = leaving(system, tie, &StiffSolution::direction, &HoldingBody::direction);
-    push_ends(system, tie, tie.stiffness * u, &StiffSolution::image, &HoldingBody::image);
+    const DVec3 u =
+        tie.other.leaving(system.parts, tie.points, &StiffSolution::direction, &HoldingBody::direction);
+    tie.other.push(system.parts, tie.points, tie.stiffness * u, &StiffSolution::image, &HoldingBody::image);
   }
 }
 

@@ -1,10 +1,8 @@
 #pragma once
 
-#include "solver/solid/weighted_points.h"
+#include "solver/solid/stiff_ends.h"
 #include "state/hooks.h"
 #include "state/tables.h"
-
-#include <cstdint>
 
 /// \file
 /// Ball hooks of stiff solids in the stiff solution. The solution finds what points do under stress while
@@ -24,16 +22,11 @@ struct StiffSystem;
 /// u being the velocity at which the points leave the other end, after the solution. `carried` is what the
 /// solution before found, so that u vanishes (augmented Lagrangian, Hestenes 1969).
 struct StiffTie {
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-
   WeightedPoints<2 * state::HookPlace::kMostParticles> points = {};
-  std::uint32_t body = kNone;   ///< Row of the other end, if it gives way.
-  std::uint32_t mover = kNone;  ///< That body in StiffSolution::holders of the first point's part.
-  double share = 1;             ///< Share of its mass that this part has [ratio].
-  DVec3 lever = {};             ///< From its center of mass [m].
-  DVec3 before = {};            ///< u before the solution, with what closes the gap within a substep [m/s].
-  double stiffness = 0;         ///< [kg]
-  DVec3 carried = {};           ///< [N s]
+  StiffEnd other = {};
+  DVec3 before = {};     ///< u before the solution, with what closes the gap within a substep [m/s].
+  double stiffness = 0;  ///< [kg]
+  DVec3 carried = {};    ///< [N s]
 };
 
 /// Lets bodies that hooks hold be unknowns of the solution, and chooses how stiff each hook is in it. Call it
@@ -54,8 +47,5 @@ void resist_ties(const StiffSystem& system);
 
 /// Takes the impulses of hooks back, so that hooks find them again when they are solved.
 void release_ties(const StiffSystem& system, state::Particles& particles);
-
-/// A body with a share of its mass.
-[[nodiscard]] HoldingBody holding_body(const state::Bodies& bodies, std::uint32_t body, double share);
 
 }  // namespace hooke::solver

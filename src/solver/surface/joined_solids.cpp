@@ -45,6 +45,24 @@ StiffRow stiff_row(const state::Tables& t, const SurfaceContacts& contacts, cons
   return result;
 }
 
+/// The row of a face and a body as they stand, for a substep of `h` [s].
+StiffRow stiff_row(const state::Tables& t, const SoftGroup& group, std::uint32_t part,
+                   const state::ElementContact& face, Real h) {
+  StiffRow result = {.normal = normalize(vector_cast<double>(face.normal)),
+                     .friction = static_cast<double>(face.friction)};
+  result.other.lever = vector_cast<double>(face.lever);
+  if (state::gives_way(t.bodies, face.body)) result.other.body = face.body;
+  const Vec3 surface = state::velocity_now(t.bodies, face.body, face.lever) + face.belt_velocity;
+  result.before = -vector_cast<double>(surface);
+  for (std::size_t k = 0; k < face.count; ++k) {
+    const auto weight = static_cast<double>(face.weight[k]);
+    result.corners.add(part, face.particle[k] - group.tetrahedra.first_particle, weight);
+    result.before += weight * vector_cast<double>(t.particles.velocity[face.particle[k]].v);
+  }
+  result.least_speed = -static_cast<double>(std::max(face.separation, Real(0))) / static_cast<double>(h);
+  return result;
+}
+
 std::uint32_t group_of(const SurfaceContacts& contacts, const SoftGroups& soft, std::uint32_t vertex) {
   return soft.group_of[contacts.surfaces.object_of(vertex)];
 }
@@ -76,7 +94,8 @@ std::uint32_t group_of(const SoftGroups& soft, const state::Hook& hook) {
 }
 
 /// Finds which groups are solved together. A system has the number of its first contact or hook.
-void number_systems(const state::Tables& t, const SurfaceContacts& contacts, const SoftGroups& soft,
+void number_systems(const state::Tables& t, const SurfaceContacts& contacts,
+                    std::span<const state::ElementContact> faces, const SoftGroups& soft,
                     JoinedSolids& joined) {
   joined.sets.reset(soft.groups.size());
   for_stiff_rows(contacts, [&](const SurfaceRow& row) {
@@ -95,6 +114,7 @@ void number_systems(const state::Tables& t, const SurfaceContacts& contacts, con
   };
   for_stiff_rows(contacts, [&](const SurfaceRow& row) { number(group_of(contacts, soft, row.vertex[0])); });
   for (const std::uint32_t i : joined.hooks) number(group_of(soft, t.hooks[i]));
+  for (const state::ElementContact& face : faces) number(soft.group_of[face.object]);
   for (std::uint32_t i = 0; i < soft.groups.size(); ++i)
     joined.system_of[i] = joined.system_of[joined.sets.root(i)];
 }
@@ -129,7 +149,31 @@ void list_parts(SoftGroups& soft, JoinedSolids& joined) {
   }
 }
 
-void list_rows(const state::Tables& t, const SurfaceContacts& contacts, Real h, const SoftGroups& soft,
+/// Gives each body that several groups hold the share of its mass that each of them has.
+void share_masses(const state::Tables& t, std::span<const state::ElementContact> faces,
+                  const SoftGroups& soft, JoinedSolids& joined) {
+  joined.tied.clear();
+  for (const std::uint32_t i : joined.hooks) {
+    const state::Hook& hook = t.hooks[i];
+    const state::HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
+    joined.tied.push_back({other.is_point() ? StiffEnd::kNone : other.body, group_of(soft, hook)});
+  }
+  for (const state::ElementContact& face : faces)
+    joined.tied.push_back({face.body, soft.group_of[face.object]});
+  std::sort(joined.tied.begin(), joined.tied.end());
+}
+
+/// The share of a body's mass that a group has whose hooks or faces hold it.
+double share_of(const JoinedSolids& joined, std::uint32_t body, std::uint32_t group) {
+  const auto count = [&](std::array<std::uint32_t, 2> first, std::array<std::uint32_t, 2> last) {
+    return static_cast<double>(std::upper_bound(joined.tied.begin(), joined.tied.end(), last) -
+                               std::lower_bound(joined.tied.begin(), joined.tied.end(), first));
+  };
+  return count({body, group}, {body, group}) / count({body, 0}, {body, ~std::uint32_t{0}});
+}
+
+void list_rows(const state::Tables& t, const SurfaceContacts& contacts,
+               std::span<const state::ElementContact> faces, Real h, const SoftGroups& soft,
                JoinedSolids& joined) {
   using System = JoinedSolids::System;
   const auto system_of = [&](const SurfaceRow& row) -> System& {
@@ -140,11 +184,23 @@ void list_rows(const state::Tables& t, const SurfaceContacts& contacts, Real h, 
     ++system_of(row).end_row;
     ++count;
   });
+  const auto system_of_face = [&](const state::ElementContact& face) -> System& {
+    return joined.systems[joined.system_of[soft.group_of[face.object]] - 1];
+  };
+  for (const state::ElementContact& face : faces) ++system_of_face(face).end_row;
+  count += faces.size();
   lay_out(joined.systems, &System::first_row, &System::end_row);
   joined.rows.resize(count);
   for_stiff_rows(contacts, [&](const SurfaceRow& row) {
     joined.rows[system_of(row).end_row++] = stiff_row(t, contacts, soft, joined.part_of, row, h);
   });
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const std::uint32_t group = soft.group_of[faces[i].object];
+    StiffRow& row = joined.rows[system_of_face(faces[i]).end_row++];
+    row = stiff_row(t, soft.groups[group], joined.part_of[group], faces[i], h);
+    row.face = static_cast<std::uint32_t>(i);
+    if (row.other.body != StiffEnd::kNone) row.other.share = share_of(joined, row.other.body, group);
+  }
 }
 
 /// A hook as it stands, for a substep of `h` [s].
@@ -168,34 +224,14 @@ StiffTie tie_of(const state::Tables& t, const SoftGroups& soft, const std::vecto
   const state::HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
   if (!other.is_point()) {
     const JointBody body = joint_body_now(t.bodies, other.body);
-    tie.lever = rotate(body.rotation, other.anchor);
-    gap -= body.center + tie.lever;
-    tie.before -= body.v + cross(body.scale * body.omega_scaled, tie.lever);
+    tie.other.lever = rotate(body.rotation, other.anchor);
+    gap -= body.center + tie.other.lever;
+    tie.before -= body.v + cross(body.scale * body.omega_scaled, tie.other.lever);
     if (other.body != state::HookPlace::kWorld && state::gives_way(t.bodies, other.body))
-      tie.body = other.body;
+      tie.other.body = other.body;
   }
   tie.before += (1 / static_cast<double>(h)) * gap;
   return tie;
-}
-
-/// Gives each body that several groups hold the share of its mass that each of them has.
-void share_masses(const state::Tables& t, const SoftGroups& soft, JoinedSolids& joined) {
-  joined.tied.clear();
-  for (const std::uint32_t i : joined.hooks) {
-    const state::Hook& hook = t.hooks[i];
-    const state::HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
-    joined.tied.push_back({other.is_point() ? StiffTie::kNone : other.body, group_of(soft, hook)});
-  }
-  std::sort(joined.tied.begin(), joined.tied.end());
-}
-
-/// The share of a body's mass that a group has of which hooks hold it.
-double share_of(const JoinedSolids& joined, std::uint32_t body, std::uint32_t group) {
-  const auto count = [&](std::array<std::uint32_t, 2> first, std::array<std::uint32_t, 2> last) {
-    return static_cast<double>(std::upper_bound(joined.tied.begin(), joined.tied.end(), last) -
-                               std::lower_bound(joined.tied.begin(), joined.tied.end(), first));
-  };
-  return count({body, group}, {body, group}) / count({body, 0}, {body, ~std::uint32_t{0}});
 }
 
 void list_ties(const state::Tables& t, Real h, const SoftGroups& soft, JoinedSolids& joined) {
@@ -205,12 +241,12 @@ void list_ties(const state::Tables& t, Real h, const SoftGroups& soft, JoinedSol
   };
   for (const std::uint32_t i : joined.hooks) ++system_of(i).end_tie;
   lay_out(joined.systems, &System::first_tie, &System::end_tie);
-  share_masses(t, soft, joined);
   joined.ties.resize(joined.hooks.size());
   for (const std::uint32_t i : joined.hooks) {
     StiffTie& tie = joined.ties[system_of(i).end_tie++];
     tie = tie_of(t, soft, joined.part_of, t.hooks[i], h);
-    if (tie.body != StiffTie::kNone) tie.share = share_of(joined, tie.body, group_of(soft, t.hooks[i]));
+    if (tie.other.body != StiffEnd::kNone)
+      tie.other.share = share_of(joined, tie.other.body, group_of(soft, t.hooks[i]));
   }
 }
 
@@ -228,7 +264,8 @@ void mark_stiff_solids(const state::Tables& t, const SoftGroups& soft, SurfaceCo
   }
 }
 
-void list_joined_solids(const state::Tables& t, const SurfaceContacts& contacts, Real h, SoftGroups& soft,
+void list_joined_solids(const state::Tables& t, const SurfaceContacts& contacts,
+                        std::span<const state::ElementContact> faces, Real h, SoftGroups& soft,
                         JoinedSolids& joined) {
   joined.systems.clear();
   joined.parts.clear();
@@ -237,9 +274,10 @@ void list_joined_solids(const state::Tables& t, const SurfaceContacts& contacts,
   joined.ties.clear();
   if (!contacts.any_stiff) return;
   list_hooks(t, contacts, joined);
-  number_systems(t, contacts, soft, joined);
+  number_systems(t, contacts, faces, soft, joined);
   list_parts(soft, joined);
-  list_rows(t, contacts, h, soft, joined);
+  share_masses(t, faces, soft, joined);
+  list_rows(t, contacts, faces, h, soft, joined);
   list_ties(t, h, soft, joined);
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hooke::solver {
@@ -27,9 +28,10 @@ struct JoinedSolids {
   std::vector<StiffTie> ties;             ///< System after system.
   std::vector<std::uint32_t> system_of;   ///< By soft group: 1 + its system; 0 for one that is solved alone.
   std::vector<std::uint32_t> hooks;       ///< Rows of the hooks of stiff solids.
-  std::vector<std::array<std::uint32_t, 2>> tied;  ///< By tie: its body, and the group of its first point.
-  base::DisjointSets sets;                         ///< Scratch memory, as is all below.
-  std::vector<std::uint32_t> part_of;              ///< By soft group: its number within its system.
+  std::vector<std::array<std::uint32_t, 2>>
+      tied;                            ///< By tie and face: its body, and the group of its points.
+  base::DisjointSets sets;             ///< Scratch memory, as is all below.
+  std::vector<std::uint32_t> part_of;  ///< By soft group: its number within its system.
 
   /// Whether a group is solved with others.
   [[nodiscard]] bool has(const SoftGroups& soft, const SoftGroup& group) const {
@@ -45,9 +47,10 @@ struct JoinedSolids {
 /// Marks the solids whose contacts belong to their stiff solution. Call it before contacts are found.
 void mark_stiff_solids(const state::Tables& tables, const SoftGroups& soft, SurfaceContacts& contacts);
 
-/// Lists the solids that are solved at once, and the contacts between them and their hooks in a substep of
-/// `h` [s].
-void list_joined_solids(const state::Tables& tables, const SurfaceContacts& contacts, Real h,
-                        SoftGroups& soft, JoinedSolids& joined);
+/// Lists the solids that are solved at once, the contacts between them, those of their `faces` with bodies,
+/// and their hooks in a substep of `h` [s].
+void list_joined_solids(const state::Tables& tables, const SurfaceContacts& contacts,
+                        std::span<const state::ElementContact> faces, Real h, SoftGroups& soft,
+                        JoinedSolids& joined);
 
 }  // namespace hooke::solver
