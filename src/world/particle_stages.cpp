@@ -395,7 +395,8 @@ void rebase_origins(WorldData& world) {
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   std::vector<int>& pressing = world.frame.pressing_points;
-  if (world.frame.surfaces.any_stiff) solver::count_pressing_points(tables, h, pressing);
+  if (world.frame.surfaces.any_stiff)
+    solver::count_pressing_points(tables, world.frame.surfaces.stiff, h, pressing);
   solver::JoinedSolids& joined = world.frame.joined_solids;
   find_pressed_faces(world, h);
   std::vector<state::ElementContact>& faces = world.frame.pressed_faces;

@@ -320,10 +320,12 @@ void guess_changes(const state::Tables& t, TetrahedronBlocks& tetrahedra) {
 
 }  // namespace
 
-void count_pressing_points(const state::Tables& t, Real h, std::vector<int>& shares) {
+void count_pressing_points(const state::Tables& t, std::span<const std::uint8_t> solved_whole, Real h,
+                           std::vector<int>& shares) {
   shares.assign(t.bodies.motion.size(), 0);
-  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row)
-    shares[t.contacts.body[row]] += presses(t, row, h);
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+    if (solved_whole[t.contacts.object[row]] != 0) shares[t.contacts.body[row]] += presses(t, row, h);
+  }
 }
 
 void note_pressed_points(const state::Tables& t, const std::vector<int>& shares, Real h,

@@ -5,13 +5,17 @@
 #include "solver/solid/tetrahedron_blocks.h"
 #include "state/tables.h"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hooke::solver {
 
-/// Counts the points of deformables that press on each body, or are about to in a substep of `h` [s], by row
-/// of the body.
-void count_pressing_points(const state::Tables& tables, Real h, std::vector<int>& shares);
+/// Counts the points of objects that `solved_whole` marks which press on each body, or are about to in a
+/// substep of `h` [s], by row of the body. Points of others do not count: with a share of its mass for those
+/// of a cloth that lay between, a ball of 8 kg was driven into a plate and gained 60 times all energy.
+void count_pressing_points(const state::Tables& tables, std::span<const std::uint8_t> solved_whole, Real h,
+                           std::vector<int>& shares);
 
 /// Notes the points of solids that bodies press on, the bodies that hold them with their shares of mass, and
 /// what contacts do to each object as a whole, with which the solution begins. Otherwise stress would push
