@@ -1,11 +1,11 @@
 #include "hooke/command_line.h"
 #include "hooke/drawing/drawing_style.h"
+#include "hooke/model_options.h"
+#include "hooke/session/model_scene.h"
 #include "hooke/session/session.h"
-#include "hooke/view/scene_list.h"
 #include "hooke/view/view_window.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -16,7 +16,7 @@ namespace {
 
 struct CommandOptions {
   std::string path;
-  std::optional<double> fit;  ///< [m]
+  ModelOptions model;
   bool paused = false;
   std::optional<double> seconds;
   std::string screenshot;
@@ -29,7 +29,7 @@ struct CommandOptions {
 
 void describe(CLI::App& app, CommandOptions& options) {
   app.add_option("SCENE", options.path, "Scene file, or a model: .3ds .obj .stl .ply .gltf .glb")->required();
-  add_number(app, "--fit", options.fit, 1e-6, 1e6, "Longest side of a model [m]; 1 by default");
+  add_model_options(app, options.model);
   app.add_flag("--paused", options.paused, "Start paused");
   add_seconds(app, options.seconds, "Close after so much simulated time; never by default");
   app.add_option("--screenshot", options.screenshot, "Write the last picture to this .png")
@@ -45,46 +45,24 @@ void describe(CLI::App& app, CommandOptions& options) {
       "to\n"
       "turn the camera; the wheel zooms. Space plays and pauses, S steps, B shoots a ball, U undoes, R goes "
       "back\n"
-      "to the start, the bar below rewinds. The key ? lists all keys.\n\n"
+      "to the start, the bar below rewinds. G, J and K make a model a rigid body, jelly or cloth. The key ? "
+      "lists\n"
+      "all keys. A model's longest side is 1 m unless --fit or --scale says otherwise.\n\n"
       "Examples:\n"
       "  hooke view scenes/showcase.json\n"
       "  hooke view scenes/paper/fig7.json --bounds sphere,oriented_box\n"
-      "  hooke view scenes/models/lantern.3ds --fit 0.4");
-}
-
-/// Makes a scene with the model standing on a ground.
-Result<Scene> scene_of_model(const std::string& file, std::optional<double> fit) {
-  const ImportOptions import = {.fit = fit.value_or(1)};
-  const auto model = import_model(file, import);
-  if (!model) return model.error();
-  float lowest = 0;
-  for (const ModelVertex& vertex : model.value().vertices) {
-    lowest =
-        &vertex == model.value().vertices.data() ? vertex.position[1] : std::min(lowest, vertex.position[1]);
-  }
-  Scene scene;
-  const std::filesystem::path path = file;
-  scene.title = path.filename().string();
-  // Paths of meshes are relative to the scene, so that the scene gets a path beside the model.
-  scene.path = (path.parent_path() / "model.json").string();
-  scene.meshes.push_back({.name = "model", .file = path.filename().string(), .import = import});
-  scene.materials.push_back({.name = "ground", .color = {0.13F, 0.16F, 0.14F}});
-  scene.objects.bodies.push_back({.tag = {.name = "ground", .material = "ground"}});
-  SceneBody body;
-  body.tag.name = body.mesh = "model";
-  body.desc.shape.kind = ShapeKind::kMesh;
-  body.desc.position = {0, -static_cast<double>(lowest), 0};
-  scene.objects.bodies.push_back(std::move(body));
-  return scene;
+      "  hooke view scenes/models/lantern.3ds --fit 0.4\n"
+      "  hooke view part.stl --up y --scale 0.001");
 }
 
 /// Reads a scene file, or makes the scene of a model.
 Loaded<SceneDocument> read(const CommandOptions& options, const std::string& file) {
   if (!is_model_file(file)) return read_document(file);
-  auto scene = scene_of_model(file, options.fit);
-  if (!scene) return {.errors = {scene.error()}};
-  std::string text = write_scene(scene.value());
-  return {.value = SceneDocument{file, std::move(text), std::move(scene).value()}};
+  ImportOptions import = options.model.options();
+  if (!options.model.scale && !import.fit) import.fit = 1;
+  auto document = document_of_model(file, import);
+  if (!document) return {.errors = {document.error()}};
+  return {.value = std::move(document).value()};
 }
 
 /// Returns how the session gets scenes.

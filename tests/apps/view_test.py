@@ -45,16 +45,16 @@ def start_display():
 class Window:
     """A running `hooke view`, its log, and the mouse and keys of its display."""
 
-    def __init__(self, folder, display, *words):
+    def __init__(self, folder, display, *words, scene="scene.json", first="ball"):
         self.log = pathlib.Path(folder) / "log.jsonl"
         self.log.unlink(missing_ok=True)
         self.environment = {**os.environ, "DISPLAY": display, "ASAN_OPTIONS": "detect_leaks=0"}
-        self.program = subprocess.Popen([PROGRAM, "view", "scene.json", "--log", str(self.log), *words], cwd=folder,
+        self.program = subprocess.Popen([PROGRAM, "view", scene, "--log", str(self.log), *words], cwd=folder,
                                         env=self.environment, stderr=subprocess.PIPE, text=True)
         self.read = 0
         self.last = {}
         self.gl_errors = set()
-        self.wait("a first picture", lambda s: s["stage"] == "ready" and "ball" in s["objects"])
+        self.wait("a first picture", lambda s: s["stage"] == "ready" and first in s["objects"])
 
     def lines(self):
         if not self.log.exists():
@@ -175,8 +175,8 @@ class View(unittest.TestCase):
             self.window.program.wait()
             self.window.program.stderr.close()
 
-    def open(self, *words):
-        self.window = Window(self.folder.name, self.display, *words)
+    def open(self, *words, **more):
+        self.window = Window(self.folder.name, self.display, *words, **more)
         return self.window
 
     def end(self):
@@ -273,6 +273,25 @@ class View(unittest.TestCase):
         window.do("click", 4)
         near = window.wait("the wheel zooms", lambda s: s["objects"] != far)
         self.assertNotEqual(near["objects"]["ball"]["pixel"], far["ball"]["pixel"])
+        self.end()
+
+    def test_a_model_becomes_rigid_jelly_and_cloth_by_keys_and_boxes(self):
+        model = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "models" / "crate.3ds"
+        shutil.copy(model, self.folder.name)
+        window = self.open("--paused", "--up", "z", scene="crate.3ds", first="model")
+        still = window.last["objects"]["model"]["place"]
+        self.assertIn("form jelly", window.fresh()["boxes"])
+        for key, name in (("g", "a rigid body"), ("j", "jelly"), ("k", "cloth"), ("k", "still")):
+            with self.subTest(key):
+                window.do("key", key)
+                window.wait(name, lambda s, name=name: s["said"] == f"the model is {name} now")
+        self.assertEqual(window.fresh()["objects"]["model"]["place"], still)
+        window.click("form rigid")
+        window.wait("a rigid body", lambda s: s["said"] == "the model is a rigid body now")
+        before = window.last["objects"]["model"]["place"]
+        for _ in range(6):
+            window.key("s")
+        self.assertLess(window.last["objects"]["model"]["place"][1], before[1] - 0.03)
         self.end()
 
     def test_a_value_is_edited_undone_done_again_and_saved(self):

@@ -42,6 +42,20 @@ bool replaces(const Command& next, const Command& before) {
   return (is_move(next) && is_move(before)) || (holds<Seek>(next) && holds<Seek>(before));
 }
 
+const char* name_of(ModelForm form) {
+  switch (form) {
+    case ModelForm::kRigid:
+      return "a rigid body";
+    case ModelForm::kJelly:
+      return "jelly";
+    case ModelForm::kCloth:
+      return "cloth";
+    case ModelForm::kStill:
+      break;
+  }
+  return "still";
+}
+
 /// A place that stands for an object in logs: where a mouse would find it.
 DVec3 place_of(const World& world, const SceneObject& object) {
   if (object.kind == SceneObject::Kind::kBody) return world.pose(object.body).position;
@@ -344,6 +358,19 @@ void Session::obey(const Change& change) {
   if (!live) return say({false, to_line(errors.front())});
   replace(std::move(live));
   say({true, what + "; the scene starts anew with it"});
+}
+
+void Session::obey(const TurnModel& turn) {
+  const SharedDocument& before = live_->document();
+  const std::optional<ModelForm> now = form_of_model(*before);
+  const ModelForm form = now == turn.form ? ModelForm::kStill : turn.form;
+  Result<SceneDocument> turned = turn_model(*before, form);
+  if (!turned) return say({false, "nothing is turned: " + turned.error().message});
+  LivePtr live = build(std::make_shared<const SceneDocument>(std::move(turned).value()));
+  const std::vector<Error> errors = std::exchange(state_.errors, {});
+  if (!live) return say({false, "the model stays as it was: " + to_line(errors.front())});
+  replace(std::move(live));
+  say({true, std::string("the model is ") + name_of(form) + " now"});
 }
 
 void Session::obey(const Save& save) {

@@ -8,6 +8,7 @@
 #include "hooke/session/insight.h"
 #include "hooke/session/live_scene.h"
 #include "hooke/session/measured_value.h"
+#include "hooke/session/model_scene.h"
 #include "hooke/session/scene_document.h"
 
 #include <chrono>
@@ -59,6 +60,11 @@ struct Change {
   std::string path = {};   ///< As "ropes[0].total_mass".
   std::string value = {};  ///< As JSON.
 };
+/// Makes the model that is shown by itself rigid, jelly or cloth; of what it is already, still again. The
+/// scene starts anew with it.
+struct TurnModel {
+  ModelForm form = ModelForm::kRigid;
+};
 /// Saves the scene as it is edited now.
 struct Save {
   std::string name =
@@ -76,8 +82,8 @@ struct ShowInsight {
   InsightWish wish = {};
 };
 
-using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Redo, Restart, Open, Reload, Change, Save,
-                             Select, ShowInsight, SaveFigures, Action>;
+using Command = std::variant<Play, MakeSteps, SetSpeed, Seek, Undo, Redo, Restart, Open, Reload, Change,
+                             TurnModel, Save, Select, ShowInsight, SaveFigures, Action>;
 
 /// An object of the scene, for lists.
 struct ListedObject {
@@ -196,6 +202,7 @@ class Session {
   void obey(const Open& open);
   void obey(const Reload& reload);
   void obey(const Change& change);
+  void obey(const TurnModel& turn);
   void obey(const Save& save);
   void obey(const Select& select);
   void obey(const ShowInsight& show);

@@ -1,6 +1,7 @@
 #include "hooke/view/scene_list.h"
 
 #include "hooke/scene_io.h"
+#include "hooke/session/model_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -70,14 +71,6 @@ std::vector<fs::path> files_of(const fs::path& root) {
 }
 
 }  // namespace
-
-bool is_model_file(const std::string& file) {
-  std::string ending = fs::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto known = {".3ds", ".obj", ".stl", ".ply", ".gltf", ".glb"};
-  return std::any_of(known.begin(), known.end(), [&](const char* e) { return ending == e; });
-}
 
 SceneList::SceneList(std::string file) : thread_([this, file = std::move(file)] { read(file); }) {}
 

@@ -46,7 +46,4 @@ class SceneList {
   std::thread thread_;  ///< Comes last: it uses all of the above.
 };
 
-/// Whether a file is a model, by its ending.
-bool is_model_file(const std::string& file);
-
 }  // namespace hooke::app

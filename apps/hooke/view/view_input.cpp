@@ -47,6 +47,7 @@ constexpr ViewInput::KeyHelp kHelp[] = {
     {"H", "ties: once at each end of a string"},
     {"C", "takes the knife: the next drag draws the line of a cut"},
     {"Delete", "removes what is under the mouse"},
+    {"G, J, K", "make a model that was opened by itself a rigid body, jelly, cloth; again: still"},
     {"?, F1", "shows and hides this page"},
     {"Escape", "closes this page, or the window"},
 };
@@ -186,6 +187,12 @@ void ViewInput::key(Key key) {
     case Key::kCut:
       has_knife_ = !has_knife_;
       return;
+    case Key::kRigid:
+      return post(TurnModel{ModelForm::kRigid});
+    case Key::kJelly:
+      return post(TurnModel{ModelForm::kJelly});
+    case Key::kCloth:
+      return post(TurnModel{ModelForm::kCloth});
     case Key::kUndo:
       return post(Undo{});
     default:

@@ -20,18 +20,21 @@ class ViewInput {
  public:
   enum class Button : std::uint8_t { kLeft, kRight, kMiddle };
   enum class Key : std::uint8_t {
-    kPlay,       ///< Plays and pauses.
-    kStep,       ///< One step on.
-    kStepBack,   ///< One step back.
-    kRestart,    ///< Back to the start.
-    kSlower,     ///< Time passes half as fast.
-    kFaster,     ///< Twice as fast.
-    kShoot,      ///< Shoots a ball at what the mouse points at.
-    kDrop,       ///< Drops a copy of the chosen object there.
-    kPin,        ///< Pins or unpins what the mouse points at.
-    kTie,        ///< The first time takes an end, the second time ties it to another.
-    kRemove,     ///< Removes what the mouse points at.
-    kCut,        ///< Takes the knife, or lays it down: the next drag is a cut.
+    kPlay,      ///< Plays and pauses.
+    kStep,      ///< One step on.
+    kStepBack,  ///< One step back.
+    kRestart,   ///< Back to the start.
+    kSlower,    ///< Time passes half as fast.
+    kFaster,    ///< Twice as fast.
+    kShoot,     ///< Shoots a ball at what the mouse points at.
+    kDrop,      ///< Drops a copy of the chosen object there.
+    kPin,       ///< Pins or unpins what the mouse points at.
+    kTie,       ///< The first time takes an end, the second time ties it to another.
+    kRemove,    ///< Removes what the mouse points at.
+    kCut,       ///< Takes the knife, or lays it down: the next drag is a cut.
+    kRigid,     ///< Makes a model that is shown by itself a rigid body, or still again; so the next two.
+    kJelly,
+    kCloth,
     kUndo,       ///< Goes back to before the last action or edit.
     kRedo,       ///< Does again what was undone.
     kReload,     ///< Reads the file again.

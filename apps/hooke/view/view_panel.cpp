@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <imgui.h>
+#include <optional>
 #include <string>
+#include <tuple>
 
 namespace hooke::app {
 
@@ -41,6 +43,24 @@ void build_choice(const SessionView& view, ViewInput& input) {
     if (ImGui::Selectable(name.c_str(), name == input.chosen())) input.choose(name);
   }
   ImGui::EndCombo();
+}
+
+/// What a model that is shown by itself is made of.
+void build_forms(const SessionView& view, ViewInput& input, WidgetBoxes& boxes) {
+  if (!view.document) return;
+  const std::optional<ModelForm> now = form_of_model(*view.document);
+  if (!now) return;
+  constexpr std::tuple<const char*, ModelForm, ViewInput::Key> kForms[] = {
+      {"rigid", ModelForm::kRigid, ViewInput::Key::kRigid},
+      {"jelly", ModelForm::kJelly, ViewInput::Key::kJelly},
+      {"cloth", ModelForm::kCloth, ViewInput::Key::kCloth}};
+  for (const auto& [name, form, key] : kForms) {
+    bool is_form = form == *now;
+    if (ImGui::Checkbox(name, &is_form)) input.key(key);
+    note_box(boxes, std::string("form ") + name);
+    ImGui::SameLine();
+  }
+  ImGui::TextUnformatted("model");
 }
 
 /// What is wrong with the file, and what is being done.
@@ -101,6 +121,7 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double 
   }
   build_buttons(view, input);
   build_choice(view, input);
+  build_forms(view, input, boxes_);
   ImGui::Text("time     %10.3f s, speed %g", view.time, view.speed);
   ImGui::Text("step     %10.3f ms", view.step_ms);
   ImGui::Text("pictures %10.1f /s", picture_ms > 0 ? 1000 / picture_ms : 0.0);

@@ -146,6 +146,12 @@ std::optional<Key> key_of(int key, int modifiers) {
       return Key::kTie;
     case GLFW_KEY_C:
       return Key::kCut;
+    case GLFW_KEY_G:
+      return Key::kRigid;
+    case GLFW_KEY_J:
+      return Key::kJelly;
+    case GLFW_KEY_K:
+      return Key::kCloth;
     case GLFW_KEY_DELETE:
       return Key::kRemove;
     case GLFW_KEY_U:
