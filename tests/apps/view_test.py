@@ -294,6 +294,14 @@ class View(unittest.TestCase):
         self.assertLess(window.last["objects"]["model"]["place"][1], before[1] - 0.03)
         self.end()
 
+    def test_in_a_small_window_the_plot_stays_above_the_timeline(self):
+        window = self.open("--paused", "--ui-scale", "1")
+        window.do("search", "--onlyvisible", "--name", "Hooke", "windowsize", 640, 360)
+        state = window.wait("a small window", lambda s: s["boxes"].get("timeline", [0, 999])[1] < 360)
+        self.assertLess(state["boxes"]["plot"][3], state["boxes"]["timeline"][1])
+        self.assertIn("save CSV", state["boxes"])
+        self.end()
+
     def test_a_value_is_edited_undone_done_again_and_saved(self):
         window = self.open("--paused")
         for _ in range(4):

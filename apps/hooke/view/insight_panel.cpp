@@ -47,6 +47,7 @@ void build_legend(const DebugDrawDesc& shown, const Insight& insight) {
   if (shown.contacts) {
     ImGui::Text("%u contacts, the largest force %.4g N", legend.contacts, legend.force);
     ImGui::TextDisabled("normal green, force red, friction yellow");
+    if (insight.arrow_force > 0) ImGui::TextDisabled("the longest arrow is %.4g N", insight.arrow_force);
   }
   if (shown.velocities) ImGui::Text("arrows: the way in 0.1 s; up to %.4g m/s", legend.speed);
   if (shown.loads) {

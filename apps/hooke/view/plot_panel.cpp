@@ -10,9 +10,11 @@ namespace hooke::app {
 
 namespace {
 
-constexpr double kSeconds = 10;     ///< Time that a plot shows [s].
-constexpr float kPlotHeight = 10;   ///< In heights of the font.
-constexpr float kChoiceWidth = 15;  ///< The same.
+constexpr double kSeconds = 10;        ///< Time that a plot shows [s].
+constexpr float kPlotHeight = 10;      ///< In heights of the font; in a small window less, down to
+constexpr float kLeastHeight = 4;      ///< this, and
+constexpr float kHeightShare = 0.18F;  ///< at most this share of the window.
+constexpr float kChoiceWidth = 15;     ///< The same.
 
 /// Figures of the world that belong into one plot.
 struct Group {
@@ -70,7 +72,10 @@ std::array<double, 2> range_of(const std::vector<Curve>& curves) {
 /// All curves share one scale, so that one sees energy move from one form to another.
 void draw_curves(const std::vector<Curve>& curves, double now) {
   const std::array<double, 2> range = range_of(curves);
-  const ImVec2 size = {ImGui::GetContentRegionAvail().x, kPlotHeight * ImGui::GetFontSize()};
+  const float unit = ImGui::GetFontSize();
+  const ImVec2 size = {
+      ImGui::GetContentRegionAvail().x,
+      std::clamp(kHeightShare * ImGui::GetIO().DisplaySize.y, kLeastHeight * unit, kPlotHeight * unit)};
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 end = {corner.x + size.x, corner.y + size.y};
   ImDrawList* canvas = ImGui::GetWindowDrawList();
@@ -132,11 +137,11 @@ void PlotPanel::build(const SessionView& view, ViewInput& input, WidgetBoxes& bo
     chosen_ = "energy";
     curves = curves_of(*view.history, chosen_);
   }
-  draw_curves(curves, view.time);
   build_choice(view, boxes);
   ImGui::SameLine();
   if (ImGui::Button("save CSV")) input.post(SaveFigures{});
   note_box(boxes, "save CSV");
+  draw_curves(curves, view.time);
 }
 
 }  // namespace hooke::app

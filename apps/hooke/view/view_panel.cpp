@@ -3,6 +3,7 @@
 #include "hooke/view/insight_panel.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <imgui.h>
 #include <optional>
 #include <string>
@@ -12,7 +13,8 @@ namespace hooke::app {
 
 namespace {
 
-constexpr float kPanelWidth = 23;  ///< In heights of the font.
+constexpr float kPanelWidth = 23;        ///< In heights of the font.
+constexpr float kTimelineHeight = 6.5F;  ///< Of the bar below, with what lies around it; the same.
 const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
 const ImVec4 kTroubleColor = {1, 0.75F, 0.35F, 1};
 
@@ -112,6 +114,9 @@ double in_mebibytes(std::size_t bytes) {
 void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double picture_ms) {
   ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize({kPanelWidth * ImGui::GetFontSize(), 0}, ImGuiCond_FirstUseEver);
+  // What does not fit above the timeline is rolled: in a small window half of it would lie outside.
+  const float highest = ImGui::GetIO().DisplaySize.y - kTimelineHeight * ImGui::GetFontSize() - 12;
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, std::max(highest, 8 * ImGui::GetFontSize())});
   ImGui::SetNextWindowBgAlpha(0.82F);
   ImGui::Begin("Simulation", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav);
   if (view.stage == SessionView::Stage::kLoading) {
