@@ -93,6 +93,10 @@ int command_convert(Arguments arguments) {
     if (model && !c.other.empty()) model = combine(model.value(), c, options);
   }
   if (!model) return report(model.error());
+  for (const std::string& image : model.value().missing_images) {
+    warn({ErrorCode::kFileNotReadable, input,
+          "its image '" + image + "' is not beside it, and is left out: put it there"});
+  }
   if (cells->count() > 0) return write_cells(model.value(), fracture_desc, output);
   const auto written = export_model(model.value(), output);
   if (!written) return report(written.error());

@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,32 +84,75 @@ std::string percent_decoded(const std::string& text) {
 }
 
 /// Takes the image that the file itself holds; none if it is not encoded, or too large.
-void take_embedded(const aiTexture* texture, ModelMaterial& material) {
+void take_embedded(const aiTexture* texture, std::string& file, ImageBytes& image) {
   if (texture == nullptr || texture->mHeight != 0 || texture->mWidth == 0) return;
   if (texture->mWidth > io::kMaxImageSize) {
     throw Refusal(ImporterExit::kLimitExceeded, "an image of more than 64 MiB");
   }
   const auto* first = reinterpret_cast<const std::byte*>(texture->pcData);
-  material.image = std::make_shared<const std::vector<std::byte>>(first, first + texture->mWidth);
-  material.texture = bare_name(texture->mFilename.C_Str());
+  image = std::make_shared<const std::vector<std::byte>>(first, first + texture->mWidth);
+  file = bare_name(texture->mFilename.C_Str());
   const bool is_png = texture->mWidth > 4 && std::to_integer<int>(first[0]) == 0x89;
-  if (material.texture.find('.') == std::string::npos) {
-    if (material.texture.empty()) material.texture = "texture";
-    material.texture += is_png ? ".png" : ".jpg";
+  if (file.find('.') == std::string::npos) {
+    if (file.empty()) file = "texture";
+    file += is_png ? ".png" : ".jpg";
   }
 }
 
-/// Adds what a material is painted with: the name of a file, or an image in the model.
-void take_texture(const aiScene& scene, const aiMaterial& material, bool is_uri, ModelMaterial& result) {
+/// The images of a scene that were taken, each once, however many materials have it.
+using TakenImages = std::map<const aiTexture*, std::pair<std::string, ImageBytes>>;
+
+/// Where textures come from.
+struct TextureSource {
+  const aiScene& scene;
+  bool names_are_uris;
+  TakenImages& taken;
+};
+
+/// Takes the first of some textures that a material has: the name of a file, or an image in the model.
+void take_texture(const TextureSource& source, const aiMaterial& material,
+                  std::initializer_list<aiTextureType> types, std::string& file, ImageBytes& image) {
   aiString name;
-  const bool found = material.GetTexture(aiTextureType_BASE_COLOR, 0, &name) == aiReturn_SUCCESS ||
-                     material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == aiReturn_SUCCESS;
-  const bool is_embedded = found && name.length > 0 && name.C_Str()[0] == '*';
-  if (is_embedded) return take_embedded(scene.GetEmbeddedTexture(name.C_Str()), result);
-  if (found) result.texture = bare_name(is_uri ? percent_decoded(name.C_Str()) : name.C_Str());
+  const bool found = std::any_of(types.begin(), types.end(), [&](aiTextureType type) {
+    return material.GetTexture(type, 0, &name) == aiReturn_SUCCESS;
+  });
+  if (!found || name.length == 0) return;
+  if (name.C_Str()[0] != '*') {
+    file = bare_name(source.names_are_uris ? percent_decoded(name.C_Str()) : name.C_Str());
+    return;
+  }
+  const aiTexture* texture = source.scene.GetEmbeddedTexture(name.C_Str());
+  const auto [entry, is_new] = source.taken.try_emplace(texture);
+  if (is_new) take_embedded(texture, entry->second.first, entry->second.second);
+  file = entry->second.first;
+  image = entry->second.second;
 }
 
-ModelMaterial material_of(const aiScene& scene, const aiMaterial& material, const Frame& frame) {
+/// Adds metalness and roughness as a file gives them, and what its images say of them and of the relief.
+void take_finish(const TextureSource& source, const aiMaterial& material, ModelMaterial& result) {
+  float metalness = 0.0f;
+  if (material.Get(AI_MATKEY_METALLIC_FACTOR, metalness) == aiReturn_SUCCESS)
+    result.metalness = fraction(metalness, 0.0f);
+  float roughness = 0.0f;
+  if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS) {
+    result.roughness = fraction(roughness, 1.0f);
+    result.shininess = shininess_of(*result.roughness);
+  }
+  take_texture(source, material, {aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA, aiTextureType_HEIGHT},
+               result.normal_map.file, result.normal_map.bytes);
+  float scale = 1.0f;
+  if (material.Get(AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0), scale) == aiReturn_SUCCESS ||
+      material.Get(AI_MATKEY_OBJ_BUMPMULT_HEIGHT(0), scale) == aiReturn_SUCCESS) {
+    result.normal_scale = std::isfinite(scale) ? std::clamp(scale, -100.0f, 100.0f) : 1.0f;
+  }
+  // Only glTF has both in one image.
+  if (!source.names_are_uris) return;
+  take_texture(source, material,
+               {aiTextureType_METALNESS, aiTextureType_DIFFUSE_ROUGHNESS, aiTextureType_UNKNOWN},
+               result.roughness_map.file, result.roughness_map.bytes);
+}
+
+ModelMaterial material_of(const TextureSource& source, const aiMaterial& material, const Frame& frame) {
   ModelMaterial result;
   result.name = io::cleaned_text(material.GetName().C_Str());
   aiColor4D color(result.color[0], result.color[1], result.color[2], 1.0f);
@@ -122,11 +169,9 @@ ModelMaterial material_of(const aiScene& scene, const aiMaterial& material, cons
   if (material.Get(AI_MATKEY_SHININESS, shininess) == aiReturn_SUCCESS && shininess > 0.0f) {
     result.shininess = std::min(shininess, 1000.0f);
   }
-  float roughness = 0.0f;
-  if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS) {
-    result.shininess = shininess_of(fraction(roughness, 1.0f));
-  }
-  take_texture(scene, material, frame.names_are_uris, result);
+  take_finish(source, material, result);
+  take_texture(source, material, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}, result.texture,
+               result.image);
   return result;
 }
 
@@ -134,8 +179,10 @@ ModelMaterial material_of(const aiScene& scene, const aiMaterial& material, cons
 class Builder {
  public:
   Builder(const aiScene& scene, const Frame& frame) : scene_(scene), has_normals_(frame.has_normals) {
+    TakenImages taken;
+    const TextureSource source = {scene, frame.names_are_uris, taken};
     for (unsigned i = 0; frame.has_materials && i < scene.mNumMaterials; ++i) {
-      soup_.materials.push_back(material_of(scene, *scene.mMaterials[i], frame));
+      soup_.materials.push_back(material_of(source, *scene.mMaterials[i], frame));
     }
     if (soup_.materials.empty()) soup_.materials.emplace_back();
     if (soup_.materials.size() > io::kMaxModelMaterials) {

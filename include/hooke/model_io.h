@@ -25,6 +25,12 @@ namespace hooke {
 /// The bytes of an image's file, shared by all that show it; null for none.
 using ImageBytes = std::shared_ptr<const std::vector<std::byte>>;
 
+/// An image that gives figures of a surface, not its color.
+struct ModelMap {
+  std::string file = {};  ///< Path of the image; of one in `bytes` its name; empty for none.
+  ImageBytes bytes = {};  ///< The file of the image, where the model file holds it; null otherwise.
+};
+
 /// How a surface looks.
 struct ModelMaterial {
   std::string name = {};                            ///< The name in the file; may be empty.
@@ -36,6 +42,13 @@ struct ModelMaterial {
   /// The file of the image, where the model file holds it (.glb, data in a .gltf); null for a file of its
   /// own.
   ImageBytes image = {};
+  float metalness = 0.0f;               ///< 0 for an insulator, 1 for a metal. [0, 1]
+  std::optional<float> roughness = {};  ///< 0 for a mirror, 1 for chalk; by `shininess` without it. [0, 1]
+  /// Normals in the frame of the surface: red to the right of the texture, green up, blue outward. An image
+  /// of grays is one of heights.
+  ModelMap normal_map = {};
+  float normal_scale = 1.0f;    ///< Factor of its red and green. [-100, 100]
+  ModelMap roughness_map = {};  ///< Its green multiplies the roughness, its blue the metalness (glTF).
 };
 
 /// A vertex as it is drawn.
@@ -61,6 +74,8 @@ struct Model {
   std::vector<ModelPart> parts;          ///< Parts by material; they cover `indices` in order, without gaps.
   std::vector<ModelMaterial> materials;  ///< At least one material.
   MeshDesc mesh;  ///< The mesh as simulated: vertices welded by position, without degenerate triangles.
+  std::vector<std::string> missing_images =
+      {};                                ///< Names of images that the file names and that are not there.
   std::vector<std::uint32_t> welded_of;  ///< For each drawn vertex, the index of its vertex in `mesh`.
 };
 
@@ -95,9 +110,11 @@ struct ImportOptions {
 /// - Normals are the file's (from smoothing groups in .3ds) where they agree with the faces; else they are
 ///   made, flat where the surface turns more than 0.7 rad. .stl has none worth reading.
 /// - A texture is looked up by its bare name, upper and lower case being the same, in the model's own folder
-///   and nowhere else; one that is missing is left out and the color stays. One in the file itself (.glb)
-///   comes with the material. In .3ds and .obj the image stands for the color, which becomes white. Colors of
-///   vertices are not read.
+///   and nowhere else; one that is missing is left out, named in Model::missing_images, and the color stays.
+///   One in the file itself (.glb) comes with the material. In .3ds and .obj the image stands for the color,
+///   which becomes white. Colors of vertices are not read.
+/// - Normal maps are those of `normalTexture` (.gltf, .glb), and of `norm`, `map_Bump` and `bump` (.obj);
+///   metalness and roughness are those of `pbrMetallicRoughness` with its image, and of `Pm` and `Pr`.
 ///
 /// Errors name the path, and the reason in one line; no process, file or descriptor is left behind. Limits:
 /// 1 GiB and 10 s for the child, 15 s in all, 256 MiB for the file and those it needs, which must be regular

@@ -46,12 +46,18 @@ struct SceneMaterial {
   float sheen = 0.35f;                    ///< Light that the fibers of a cloth throw at its rim. [0, 1]
   std::optional<Real> thread_pitch = {};  ///< Distance of the threads of a cloth [m], positive.
   bool hair = false;                      ///< Whether ropes are drawn as tufts of hair.
+  std::string normal_map = {};     ///< Path of an image of normals, or of heights in grays; empty for none.
+  float normal_scale = 1.0f;       ///< How strong its relief is; a negative one turns it inward. [-100, 100]
+  std::string roughness_map = {};  ///< Path of an image: green times roughness, blue times metalness.
   // What a file's objects of this material get unless they say it themselves. Objects that are made in C++ do
   // not.
-  std::optional<Real> density = {};         ///< Of bodies that move and of solids [kg/m^3], positive.
-  std::optional<Real> young_modulus = {};   ///< Of solids [Pa], positive.
-  std::optional<Real> poisson_ratio = {};   ///< Of solids. [0, 0.499]
-  std::optional<Real> areal_density = {};   ///< Of cloths [kg/m^2], positive.
+  std::optional<Real> density = {};            ///< Of bodies that move and of solids [kg/m^3], positive.
+  std::optional<Real> young_modulus = {};      ///< Of solids [Pa], positive.
+  std::optional<Real> poisson_ratio = {};      ///< Of solids. [0, 0.499]
+  std::optional<Real> areal_density = {};      ///< Of cloths [kg/m^2], positive.
+  std::optional<Real> stretch_stiffness = {};  ///< Of cloths: force per width over strain [N/m], positive.
+  std::optional<Real> shear_stiffness = {};    ///< Of cloths: force per width over the angle [N/m], positive.
+  std::optional<Real> bend_stiffness = {};  ///< Of cloths: moment per width over curvature [N m], positive.
   std::optional<Real> linear_density = {};  ///< Of ropes [kg/m], positive.
   std::optional<Real> diameter = {};        ///< Of ropes [m], positive.
   std::optional<Real> strength = {};        ///< Tension at which ropes break [N], positive.
@@ -330,6 +336,40 @@ struct SceneCamera {
   std::vector<SceneKeyframe> path = {};  ///< Replaces eye and target; smooth between keyframes.
 };
 
+/// A light besides the sun. It lights what is drawn, and changes no motion. A white surface that faces a
+/// light of intensity 1 is as bright as one that faces the usual sun: a directional light everywhere, the
+/// others at a distance of 1 m, from where it falls off by the square (KHR_lights_punctual of glTF).
+struct SceneLight {
+  /// From where its light comes.
+  enum class Kind : std::uint8_t {
+    kDirectional,  ///< From far away, along `direction`.
+    kPoint,        ///< From `position`, to all sides.
+    kSpot,         ///< From `position`, within a cone about `direction`.
+  };
+
+  Kind kind = Kind::kPoint;                         ///< From where its light comes.
+  DVec3 position = {0, 3, 0};                       ///< Of a point and a spot [m].
+  Vec3 direction = {Real(0), Real(-1), Real(0)};    ///< In which its light goes; of any length but zero.
+  std::array<float, 3> color = {1.0f, 1.0f, 1.0f};  ///< Linear red, green and blue, each in [0, 1].
+  Real intensity = Real(1);                         ///< Not negative; as bright as the usual sun is 1.
+  Real inner_deg = Real(20);  ///< Half angle of a spot within which it is as bright as its middle. [0, 80]
+  Real outer_deg = Real(30);  ///< Half angle beyond which there is none of its light. (inner_deg, 80]
+  bool shadows = true;        ///< Whether things keep its light from one another.
+};
+
+/// The most lights of a scene, besides the sun.
+inline constexpr std::size_t kMostLights = 8;
+/// The most shadow maps of them together: a point light that casts shadows needs six, any other one.
+inline constexpr std::size_t kMostLightMaps = 12;
+
+/// The sky and the sun in it.
+struct SceneSky {
+  Real brightness = Real(1);  ///< Of the sky and of its light, over the usual. [0, 10]
+  Real sun = Real(1);         ///< Intensity of the sun, over the usual; 0 for none. [0, 10]
+  /// In which the sun's light goes; of any length but zero.
+  Vec3 sun_direction = {Real(-0.45f), Real(-0.8f), Real(-0.35f)};
+};
+
 /// How exact the laboratory must be, whatever the method.
 struct SceneAccuracy {
   double max_error = 1e-3;  ///< Largest error of any point's position up to the end [m], positive.
@@ -418,6 +458,8 @@ struct Scene {
   SceneObjects objects = {};                       ///< Objects at the start.
   std::vector<SceneEvent> timeline = {};           ///< What happens on the way, in any order.
   std::optional<SceneCamera> camera = {};          ///< Where a viewer stands; without it he frames the scene.
+  SceneSky sky = {};                               ///< The sky and the sun in it.
+  std::vector<SceneLight> lights = {};             ///< Lights besides the sun, at most kMostLights.
   std::vector<SceneExpectation> expect = {};       ///< Figures that the scene promises.
   /// File that textures and meshes are relative to; empty for the current folder.
   std::string path = {};

@@ -21,7 +21,7 @@ struct Item {
   Batch batch;
   Instance instance;
   std::size_t geometry_order = 0;
-  std::size_t texture_order = 0;
+  std::array<std::size_t, 3> texture_order = {};
   float eye_distance = 0;
 };
 
@@ -70,7 +70,7 @@ Instance make_instance(const Mat4& transform, const std::array<float, 4>& color,
           color,
           {share(surface.metalness), share(surface.roughness), share(surface.sheen),
            std::max(surface.threads, 0.0F)},
-          {share(surface.transmission), 0, 0, 0}};
+          {share(surface.transmission), surface.relief, 0, 0}};
 }
 
 /// Glass takes little of the light, jelly some.
@@ -91,7 +91,9 @@ class Collector {
       for (const Vertex& vertex : item.batch.geometry->vertices) extend(place->second.box, vertex.position);
     }
     item.geometry_order = place->second.order;
-    item.texture_order = textures_.try_emplace(item.batch.texture.get(), textures_.size()).first->second;
+    const std::array images = {item.batch.texture.get(), item.batch.normals.get(), item.batch.finish.get()};
+    for (std::size_t i = 0; i < images.size(); ++i)
+      item.texture_order[i] = textures_.try_emplace(images[i], textures_.size()).first->second;
     const Bounds box = transformed(place->second.box, transform);
     item.eye_distance = is_empty(box) ? 0 : length(center_of(box) - eye_);
     result_.objects.push_back(box);
@@ -144,6 +146,8 @@ Result<Item> make_item(const DrawMesh& mesh, std::size_t index) {
   Batch& batch = item.batch;
   batch.geometry = mesh.geometry;
   batch.texture = mesh.texture;
+  batch.normals = mesh.normals;
+  batch.finish = mesh.finish;
   batch.first_index = mesh.first_index;
   batch.index_count = mesh.index_count > 0 ? mesh.index_count : total - mesh.first_index;
   if (batch.index_count % 3 != 0) {

@@ -19,7 +19,7 @@ struct Instance {
   std::array<float, 12> rows = {};    ///< Rows of the affine matrix.
   std::array<float, 4> color = {};    ///< Linear color; the last is the opacity.
   std::array<float, 4> surface = {};  ///< Metalness, roughness, sheen, threads.
-  std::array<float, 4> clear = {};    ///< Transmission, three unused.
+  std::array<float, 4> clear = {};    ///< Transmission, strength of the relief, two unused.
 };
 
 constexpr std::size_t kNoMesh = static_cast<std::size_t>(-1);
@@ -28,6 +28,8 @@ constexpr std::size_t kNoMesh = static_cast<std::size_t>(-1);
 struct Batch {
   std::shared_ptr<const MeshGeometry> geometry;
   std::shared_ptr<const Image> texture;
+  std::shared_ptr<const Image> normals;
+  std::shared_ptr<const Image> finish;
   std::size_t first_index = 0;
   std::size_t index_count = 0;
   std::size_t first_instance = 0;

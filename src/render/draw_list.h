@@ -41,11 +41,32 @@ struct Sun {
   float half_angle_deg = 1.2F;
 };
 
+/// A light besides the sun. A white surface that faces one of intensity 1 is as bright as one that faces a
+/// white sun of intensity 1: of a directional light everywhere, of the others at a distance of 1 m, from
+/// where it falls off by the square.
+struct Light {
+  enum class Kind {
+    kDirectional,  ///< From far away, along `direction`.
+    kPoint,        ///< From `position`, to all sides.
+    kSpot,         ///< From `position`, within a cone about `direction`.
+  };
+
+  Kind kind = Kind::kPoint;
+  Vec3 position = {0, 3, 0};
+  Vec3 direction = {0, -1, 0};  ///< In which its light goes, of any length but zero.
+  Color color = {1, 1, 1};
+  float intensity = 1;
+  float inner_deg = 20;  ///< Half angle of a spot within which it is as bright as in its middle.
+  float outer_deg = 30;  ///< Half angle beyond which there is none of its light, at most 80.
+  bool casts_shadow = true;
+};
+
 /// The sky gives the picture's background, the light from all sides, what shiny things mirror, and the color
 /// of what is far away.
 struct Sky {
   Color zenith = {0.30F, 0.52F, 0.80F};
   Color horizon = {0.78F, 0.87F, 0.95F};
+  float brightness = 1;  ///< Of all of it, as it is seen and as it lights.
   float ambient = 0.6F;  ///< Light of the sky, relative to its own brightness.
   float clouds = 0.5F;   ///< Share of the sky that clouds cover, 0 to 1. They give no shadow.
 };
@@ -105,6 +126,7 @@ struct Surface {
   /// AlphaMode::kBlend.
   float transmission = 0;
   float threads = 0;  ///< Threads of a cloth along one unit of its texture coordinates; 0 draws none.
+  float relief = 1;   ///< Strength of DrawMesh::normals; a negative one turns it inward.
 };
 
 struct DrawMesh {
@@ -113,6 +135,10 @@ struct DrawMesh {
   std::size_t index_count = 0;           ///< 0 means all from first_index.
   Mat4 transform;                        ///< Affine; scale may be uneven or mirrored.
   std::shared_ptr<const Image> texture;  ///< Multiplies the color; null stands for white.
+  /// Normals along the texture's u, v and outward, as bytes about 128; null for a smooth surface. Bytes are
+  /// no colors here, as in the next.
+  std::shared_ptr<const Image> normals;
+  std::shared_ptr<const Image> finish;  ///< Green times roughness, blue times metalness; null for both once.
   Color color;
   float opacity = 1;  ///< Below 1 implies AlphaMode::kBlend.
   Surface surface;
@@ -133,7 +159,7 @@ struct DrawRope {
   std::vector<Vec3> points;  ///< Fewer than two different points draw nothing.
   float radius = 0.02F;
   Color color = {0.72F, 0.56F, 0.36F};
-  Surface surface = {Shading::kRope, 0, 0.75F, 0, 0, 0};
+  Surface surface = {Shading::kRope, 0, 0.75F, 0, 0, 0, 1};
 };
 
 struct DrawSphere {
@@ -166,6 +192,7 @@ struct DrawList {
   Camera camera;
   Sun sun;
   Sky sky;
+  std::vector<Light> lights;  ///< Besides the sun; see frame.h for the most there may be.
   std::optional<Ground> ground = Ground{};
   std::vector<DrawMesh> meshes;
   std::vector<DrawRope> ropes;

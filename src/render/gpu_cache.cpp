@@ -37,7 +37,7 @@ void upload(GLenum target, GLuint buffer, const std::vector<T>& data) {
   glBufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(), GL_DYNAMIC_DRAW);
 }
 
-void upload_pixels(const Image& image) {
+void upload_pixels(const Image& image, bool is_color) {
   // OpenGL counts rows from the bottom.
   const auto row = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
   std::vector<std::uint8_t> flipped(image.pixels.size());
@@ -47,8 +47,9 @@ void upload_pixels(const Image& image) {
   }
   const bool has_alpha = image.channels == 4;
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, has_alpha ? GL_SRGB8_ALPHA8 : GL_SRGB8, image.width, image.height, 0,
-               has_alpha ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, flipped.data());
+  const GLint format = is_color ? (has_alpha ? GL_SRGB8_ALPHA8 : GL_SRGB8) : (has_alpha ? GL_RGBA8 : GL_RGB8);
+  glTexImage2D(GL_TEXTURE_2D, 0, format, image.width, image.height, 0, has_alpha ? GL_RGBA : GL_RGB,
+               GL_UNSIGNED_BYTE, flipped.data());
 }
 
 }  // namespace
@@ -87,8 +88,9 @@ Result<const GpuMesh*> GpuCache::update(const std::shared_ptr<const MeshGeometry
   return &mesh;
 }
 
-Result<GLuint> GpuCache::update(const std::shared_ptr<const Image>& image, const std::string& where) {
-  const auto place = textures_.find(image.get());
+Result<GLuint> GpuCache::update(const std::shared_ptr<const Image>& image, bool is_color,
+                                const std::string& where) {
+  const auto place = textures_.find({image.get(), is_color});
   if (place != textures_.end() && !place->second.owner.expired()) return place->second.texture.name();
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
@@ -99,12 +101,12 @@ Result<GLuint> GpuCache::update(const std::shared_ptr<const Image>& image, const
   GpuTexture made{image, make_texture()};
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, made.texture.name());
-  upload_pixels(*image);
+  upload_pixels(*image, is_color);
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   const GLuint name = made.texture.name();
-  textures_.insert_or_assign(image.get(), std::move(made));
+  textures_.insert_or_assign({image.get(), is_color}, std::move(made));
   return name;
 }
 

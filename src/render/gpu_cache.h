@@ -3,7 +3,9 @@
 #include "render/draw_list.h"
 #include "render/gl/gl_objects.h"
 
+#include <map>
 #include <unordered_map>
+#include <utility>
 
 /// \file
 /// Keeps copies of geometry and textures on the graphics card while their owners live.
@@ -34,15 +36,16 @@ class GpuCache {
   Result<const GpuMesh*> update(const std::shared_ptr<const MeshGeometry>& geometry,
                                 const std::string& where);
 
-  /// Uploads the texture once and returns it; an image that is shown must not change.
-  Result<GLuint> update(const std::shared_ptr<const Image>& image, const std::string& where);
+  /// Uploads the texture once and returns it; an image that is shown must not change. `is_color` says whether
+  /// its bytes are colors, or figures that are read as they are.
+  Result<GLuint> update(const std::shared_ptr<const Image>& image, bool is_color, const std::string& where);
 
   /// Frees copies whose owners are gone.
   void remove_orphans();
 
  private:
   std::unordered_map<const MeshGeometry*, GpuMesh> meshes_;
-  std::unordered_map<const Image*, GpuTexture> textures_;
+  std::map<std::pair<const Image*, bool>, GpuTexture> textures_;
 };
 
 }  // namespace hooke::render

@@ -1,8 +1,13 @@
 #include "render/image.h"
 
+#include "hooke/math.h"
+
 #include "process/new_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -62,6 +67,23 @@ Result<std::vector<std::uint8_t>> read_file(const std::string& path, std::size_t
   return bytes;
 }
 
+/// Rounding of compressed images makes grays differ by so much.
+constexpr int kGrayTolerance = 6;
+
+bool is_gray(const Image& image) {
+  const auto step = static_cast<std::size_t>(image.channels);
+  for (std::size_t i = 0; i + 2 < image.pixels.size(); i += step) {
+    const auto [low, high] = std::minmax({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
+    if (high - low > kGrayTolerance) return false;
+  }
+  return true;
+}
+
+std::uint8_t byte_of(float share) {
+  // The middle is exact: 128 stands for zero, as the shaders read it.
+  return static_cast<std::uint8_t>(std::clamp(std::round(128 + 127 * share), 0.0F, 255.0F));
+}
+
 }  // namespace
 
 bool is_consistent(const Image& image) {
@@ -113,6 +135,30 @@ Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& 
                      static_cast<std::size_t>(image.channels);
   image.pixels.assign(pixels.get(), pixels.get() + count);
   return image;
+}
+
+Image normals_of(const Image& image) {
+  if (!is_consistent(image) || !is_gray(image)) return image;
+  const auto height_at = [&](int x, int y) {
+    const int column = (x + image.width) % image.width;
+    const int row = (y + image.height) % image.height;
+    const auto at =
+        static_cast<std::size_t>(row * image.width + column) * static_cast<std::size_t>(image.channels);
+    return static_cast<float>(image.pixels[at]) / 255;
+  };
+  Image normals = {image.width, image.height, 3, {}};
+  normals.pixels.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
+  const float slope = 0.5F * kReliefHeight * static_cast<float>(image.width);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      // Rows count downward.
+      const Vec3 normal = normalize(Vec3{slope * (height_at(x - 1, y) - height_at(x + 1, y)),
+                                         slope * (height_at(x, y + 1) - height_at(x, y - 1)), 1});
+      for (const auto part : {normal.x, normal.y, normal.z})
+        normals.pixels.push_back(byte_of(static_cast<float>(part)));
+    }
+  }
+  return normals;
 }
 
 }  // namespace hooke::render

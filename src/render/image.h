@@ -39,4 +39,11 @@ Result<Image> load_image(const std::string& path, const ImageLimits& limits = {}
 Result<Image> decode_image(std::span<const std::byte> bytes, const std::string& name,
                            const ImageLimits& limits = {});
 
+/// Height between black and white of an image of heights, in widths of the image: files give no unit.
+inline constexpr float kReliefHeight = 1.0F / 64;
+
+/// Returns an image of normals: red to the right, green up, blue outward, each from -1 to 1. An image of
+/// grays is taken for heights, which repeat at its rim; one with colors is returned as it is.
+Image normals_of(const Image& image);
+
 }  // namespace hooke::render

@@ -73,21 +73,47 @@ std::array<float, 4> ground_plane(const Ground& ground, Vec3 eye, float haze_dis
   return {eye.x, ground.height, eye.z, std::max(above, 6 * haze_distance / kGroundRadius)};
 }
 
-void draw_shadow_map(const RendererData& data, const Prepared& prepared) {
-  glBindFramebuffer(GL_FRAMEBUFFER, data.shadow_map->framebuffer.name());
-  glViewport(0, 0, data.shadow_map->size, data.shadow_map->size);
-  glDepthMask(GL_TRUE);
-  glClear(GL_DEPTH_BUFFER_BIT);
+namespace {
+
+/// Draws depths into the map that is bound. `is_far` is for a light without a place.
+void draw_casters(const RendererData& data, const Prepared& prepared, bool is_far) {
   // Open surfaces cast shadows from both sides. What is nearer to the sun than the map reaches casts them,
   // too.
   glDisable(GL_CULL_FACE);
-  glEnable(GL_DEPTH_CLAMP);
+  if (is_far) glEnable(GL_DEPTH_CLAMP);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.0F, 1);
   draw_depths(data, prepared, data.programs.shadow, data.programs.holed_shadow,
               [](const Batch& batch) { return batch.casts_shadow; });
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_DEPTH_CLAMP);
+}
+
+}  // namespace
+
+void draw_shadow_map(const RendererData& data, const Prepared& prepared) {
+  glBindFramebuffer(GL_FRAMEBUFFER, data.shadow_map->framebuffer.name());
+  glViewport(0, 0, data.shadow_map->size, data.shadow_map->size);
+  glDepthMask(GL_TRUE);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  draw_casters(data, prepared, true);
+}
+
+void draw_light_maps(const RendererData& data, const Prepared& prepared, const LightPlan& plan,
+                     FrameUniforms frame) {
+  glBindFramebuffer(GL_FRAMEBUFFER, data.light_maps->framebuffer.name());
+  glDepthMask(GL_TRUE);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  const int size = data.light_maps->size;
+  for (std::size_t i = 0; i < plan.clips.size(); ++i) {
+    // The shaders of depths read the matrix of the sun's map from the frame.
+    frame.shadow_clip = plan.clips[i];
+    glBindBuffer(GL_UNIFORM_BUFFER, data.frame_buffer.name());
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(frame), &frame, GL_STREAM_DRAW);
+    const int tile = static_cast<int>(i);
+    glViewport(tile % kLightColumns * size, tile / kLightColumns * size, size, size);
+    draw_casters(data, prepared, plan.clips[i].m[2][3] == 0);
+  }
 }
 
 void draw_occlusion(const RendererData& data, const Prepared& prepared, const std::array<float, 4>* plane,

@@ -85,6 +85,27 @@ GroundMesh make_ground_mesh() {
   return mesh;
 }
 
+/// Brings the images of a batch to the graphics card: that of its color, and those of its relief and finish.
+Result<std::pair<GLuint, DetailTextures>> prepare_images(RendererData& data, const Batch& batch,
+                                                         const std::string& where) {
+  std::pair<GLuint, DetailTextures> found;
+  const bool has_details = batch.normals || batch.finish;
+  if (batch.texture || has_details) {
+    const auto color = data.cache.update(batch.texture ? batch.texture : data.plain, true, where);
+    if (!color) return color.error();
+    found.first = color.value();
+  }
+  if (!has_details) return found;
+  const auto made = make_detailed_programs(data.programs, data.options.fast);
+  if (!made) return made.error();
+  const auto normals = data.cache.update(batch.normals ? batch.normals : data.flat, false, where);
+  if (!normals) return normals.error();
+  const auto finish = data.cache.update(batch.finish ? batch.finish : data.plain, false, where);
+  if (!finish) return finish.error();
+  found.second = {normals.value(), finish.value()};
+  return found;
+}
+
 /// Brings everything to the graphics card, or returns what is wrong with it.
 Result<Prepared> prepare(RendererData& data, const DrawList& list) {
   auto batches = make_batches(list, data.picture.height, data.shared);
@@ -97,11 +118,10 @@ Result<Prepared> prepare(RendererData& data, const DrawList& list) {
     const auto mesh = data.cache.update(batch.geometry, where);
     if (!mesh) return mesh.error();
     prepared.meshes.push_back(mesh.value());
-    prepared.textures.push_back(0);
-    if (!batch.texture) continue;
-    const auto texture = data.cache.update(batch.texture, where);
-    if (!texture) return texture.error();
-    prepared.textures.back() = texture.value();
+    const auto images = prepare_images(data, batch, where);
+    if (!images) return images.error();
+    prepared.textures.push_back(images.value().first);
+    prepared.details.push_back(images.value().second);
   }
   fill_buffer(GL_ARRAY_BUFFER, data.instance_buffer, prepared.batches.instances);
   return prepared;
@@ -123,19 +143,24 @@ MeshLook look_of(const Batch& batch) {
 }
 
 /// Ropes and hairs have no texture.
-const MeshProgram& program_of(const Programs& programs, const Batch& batch, GLuint texture) {
-  const auto& pair = programs.meshes[static_cast<std::size_t>(look_of(batch))];
-  return texture != 0 && pair[1].program.name() != 0 ? pair[1] : pair[0];
+const MeshProgram& program_of(const Programs& programs, const Batch& batch, GLuint texture, GLuint normals) {
+  const auto& of_look = programs.meshes[static_cast<std::size_t>(look_of(batch))];
+  const auto wanted = normals != 0 ? MeshImages::kAll : texture != 0 ? MeshImages::kColor : MeshImages::kNone;
+  const MeshProgram& program = of_look[static_cast<std::size_t>(wanted)];
+  return program.program.name() != 0 ? program : of_look[0];
 }
 
 void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_through) {
   for (std::size_t i = 0; i < prepared.meshes.size(); ++i) {
     const Batch& batch = prepared.batches.batches[i];
     if ((batch.alpha == AlphaMode::kBlend) != see_through) continue;
-    const MeshProgram& program = program_of(data.programs, batch, prepared.textures[i]);
+    const DetailTextures& details = prepared.details[i];
+    const MeshProgram& program = program_of(data.programs, batch, prepared.textures[i], details.normals);
     glUseProgram(program.program.name());
     if (program.alpha_mode >= 0) glUniform1i(program.alpha_mode, static_cast<GLint>(batch.alpha));
     bind_texture(kSurfaceUnit, prepared.textures[i]);
+    bind_texture(kNormalsUnit, details.normals);
+    bind_texture(kFinishUnit, details.finish);
     if (batch.alpha == AlphaMode::kCutout) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     if (see_through && batch.two_sided) {
       // The far side is drawn first.
@@ -217,6 +242,7 @@ void bind_light(const RendererData& data) {
   glBindSampler(kShadowDepthUnit, data.raw_depths.name());
   bind_texture(kOcclusionUnit, data.occlusion ? data.occlusion->textures[1].name() : 0);
   bind_texture(kNoiseUnit, data.noise.name());
+  bind_texture(kLightMapsUnit, data.light_maps ? data.light_maps->texture.name() : 0);
 }
 
 void draw_picture(const RendererData& data, const DrawList& list, const Prepared& prepared,
@@ -249,6 +275,25 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
   glBindVertexArray(0);
 }
 
+/// Brings the lights to the graphics card, and draws their shadow maps.
+Result<void> prepare_lights(RendererData& data, const Prepared& prepared, const LightPlan& plan,
+                            const FrameUniforms& frame) {
+  glBindBuffer(GL_UNIFORM_BUFFER, data.light_buffer.name());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(plan.uniforms), &plan.uniforms, GL_STREAM_DRAW);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, data.light_buffer.name());
+  if (plan.clips.empty()) return {};
+  const int rows = static_cast<int>(plan.uniforms.count[2]);
+  if (!data.light_maps || data.light_rows != rows) {
+    auto maps = make_shadow_tiles(data.options.shadow_map_size / 2, kLightColumns, rows);
+    if (!maps) return maps.error();
+    data.light_maps = std::move(maps).value();
+    data.light_rows = rows;
+  }
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, data.frame_buffer.name());
+  draw_light_maps(data, prepared, plan, frame);
+  return {};
+}
+
 /// Resets state that another user of the context (a user interface) may have left.
 void reset_state() {
   glDisable(GL_FRAMEBUFFER_SRGB);
@@ -275,7 +320,7 @@ void draw_batch(const RendererData& data, const Batch& batch, const GpuMesh& mes
   }
   set_float_attribute(6, 4, sizeof(Instance), start + offsetof(Instance, color), 1);
   set_float_attribute(7, 4, sizeof(Instance), start + offsetof(Instance, surface), 1);
-  set_float_attribute(8, 1, sizeof(Instance), start + offsetof(Instance, clear), 1);
+  set_float_attribute(8, 2, sizeof(Instance), start + offsetof(Instance, clear), 1);
   glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
   glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(batch.index_count), GL_UNSIGNED_INT,
                           buffer_offset(batch.first_index * sizeof(std::uint32_t)),
@@ -321,6 +366,7 @@ Result<Renderer> Renderer::create(const Context& context, const RendererOptions&
   glSamplerParameteri(data->raw_depths.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   data->noise = make_noise_texture();
   data->frame_buffer = make_buffer();
+  data->light_buffer = make_buffer();
   data->instance_buffer = make_buffer();
   data->empty_array = make_vertex_array();
   data->ground = make_ground_mesh();
@@ -364,11 +410,15 @@ Result<void> Renderer::draw(const DrawList& list) {
   frame.viewport = {static_cast<float>(data.picture.width), static_cast<float>(data.picture.height),
                     kOcclusionRadius * length(list.camera.target - list.camera.eye),
                     data.occlusion ? 1.0F : 0.0F};
+  const auto lights = plan_lights(list, view, batches.casters, data.options.shadow_map_size / 2);
+  if (!lights) return lights.error();
+  reset_state();
+  auto lit = prepare_lights(data, prepared.value(), lights.value(), frame);
+  if (!lit) return lit;
   glBindBuffer(GL_UNIFORM_BUFFER, data.frame_buffer.name());
   glBufferData(GL_UNIFORM_BUFFER, sizeof(frame), &frame, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, data.frame_buffer.name());
 
-  reset_state();
   if (map_size > 0) draw_shadow_map(data, prepared.value());
   const bool from_above = list.ground && view.eye.y > list.ground->height;
   const auto plane =

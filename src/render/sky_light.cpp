@@ -10,9 +10,6 @@ namespace hooke::render {
 
 namespace {
 
-// A white surface that faces the sun is just below the point from which brightness is compressed; one in its
-// shadow has about a quarter of that.
-constexpr float kSunStrength = 1.5F;
 constexpr float kSkyStrength = 1.5F;
 constexpr float kWhiteness = 0.55F;  ///< Share of the sky's color that clouds and walls around take away.
 constexpr int kDirections = 256;     ///< Directions of the sum over the sphere.
@@ -25,8 +22,9 @@ LinearColor scaled_color(const LinearColor& color, float factor) {
 
 SkyLight sky_light_of(const DrawList& list) {
   SkyLight sky;
-  sky.zenith = linear_of(list.sky.zenith);
-  sky.horizon = linear_of(list.sky.horizon);
+  const float brightness = std::max(list.sky.brightness, 0.0F);
+  sky.zenith = scaled_color(linear_of(list.sky.zenith), brightness);
+  sky.horizon = scaled_color(linear_of(list.sky.horizon), brightness);
   sky.sun = scaled_color(linear_of(list.sun.color), kSunStrength * std::max(list.sun.intensity, 0.0F));
   sky.sun_direction = normalize(list.sun.direction);
   if (sky.sun_direction == Vec3{}) sky.sun_direction = {0, 1, 0};

@@ -9,6 +9,10 @@
 
 namespace hooke::render {
 
+/// A white surface that faces the sun is just below the point from which brightness is compressed; one in its
+/// shadow has about a quarter of that.
+inline constexpr float kSunStrength = 1.5F;
+
 using LinearColor = std::array<float, 3>;  ///< Linear red, green and blue, not bounded.
 
 /// The light that comes from all sides, in the units of the shaders: a white matte surface has the brightness

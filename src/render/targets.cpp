@@ -102,10 +102,15 @@ Result<ShadowTarget> make_shadow_target(int size) {
   if (size < 256 || size > kMaxSide) {
     return Error{ErrorCode::kOutOfRange, where, "the side must be 256 to " + std::to_string(kMaxSide)};
   }
+  return make_shadow_tiles(size, 1, 1);
+}
+
+Result<ShadowTarget> make_shadow_tiles(int size, int columns, int rows) {
+  const std::string where = "shadow map of " + std::to_string(size) + " pixels";
   ShadowTarget target;
   target.size = size;
-  target.texture =
-      make_plain_texture(GL_DEPTH_COMPONENT24, size, size, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_LINEAR);
+  target.texture = make_plain_texture(GL_DEPTH_COMPONENT24, columns * size, rows * size, GL_DEPTH_COMPONENT,
+                                      GL_UNSIGNED_INT, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
   target.framebuffer = make_framebuffer();

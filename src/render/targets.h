@@ -45,6 +45,9 @@ struct ShadowTarget {
 
 Result<ShadowTarget> make_shadow_target(int size);
 
+/// Makes a target of several square maps, `size` texels each: `columns` beside one another, in `rows`.
+Result<ShadowTarget> make_shadow_tiles(int size, int columns, int rows);
+
 /// An OcclusionTarget has a part of the picture's width and height: depths, and two pictures of how much of
 /// the sky is seen and how far away what is seen is, which are blurred to and fro.
 struct OcclusionTarget {

@@ -22,8 +22,16 @@ constexpr std::size_t kVertexSize = 32;
 Model two_part_model() {
   Model model = model_of(box({1, 2, 3}));
   model.parts = {{0, 12, 1}, {12, 24, 0}};
-  model.materials = {{.name = "paper", .color = {1, 0.5f, 0.25f}, .opacity = 0.5f, .texture = "lantern.png"},
-                     {.name = "wood \xC3\xA9", .shininess = 64}};
+  model.materials = {
+      {.name = "paper", .color = {1, 0.5f, 0.25f}, .opacity = 0.5f, .texture = "lantern.png"},
+      {.name = "wood \xC3\xA9",
+       .shininess = 64,
+       .metalness = 0.25f,
+       .roughness = 0.75f,
+       .normal_map = {.file = "n.png",
+                      .bytes = std::make_shared<const std::vector<std::byte>>(3, std::byte{7})},
+       .normal_scale = 2,
+       .roughness_map = {.file = "r.png"}}};
   return model;
 }
 
@@ -49,7 +57,18 @@ TEST_SUITE("io/model_flat") {
     REQUIRE(back.value().materials.size() == 2);
     CHECK(back.value().materials[0].texture == "lantern.png");
     CHECK(back.value().materials[0].opacity == 0.5f);
-    CHECK(back.value().materials[1].name == "wood \xC3\xA9");
+    const hooke::ModelMaterial& wood = back.value().materials[1];
+    CHECK(wood.name == "wood \xC3\xA9");
+    CHECK(wood.metalness == 0.25f);
+    CHECK(wood.roughness == 0.75f);
+    CHECK(wood.normal_map.file == "n.png");
+    REQUIRE(wood.normal_map.bytes != nullptr);
+    CHECK(wood.normal_map.bytes->size() == 3);
+    CHECK(wood.normal_scale == 2);
+    CHECK(wood.roughness_map.file == "r.png");
+    CHECK(wood.roughness_map.bytes == nullptr);
+    CHECK_FALSE(back.value().materials[0].roughness.has_value());
+    CHECK(back.value().materials[0].normal_map.file.empty());
   }
 
   TEST_CASE("each header field is checked before anything is allocated for it") {

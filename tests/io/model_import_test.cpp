@@ -3,8 +3,11 @@
 #include "geometry/mesh/preselection.h"
 #include "io/model_support.h"
 
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <limits>
+#include <string>
+#include <vector>
 
 using hooke::ErrorCode;
 using hooke::import_model;
@@ -128,6 +131,64 @@ TEST_SUITE("io/model_import") {
       const auto& n = model.vertices[model.indices[i]].normal;
       CHECK(dot(cross(p[1] - p[0], p[2] - p[0]), hooke::DVec3{n[0], n[1], n[2]}) > 0);
     }
+  }
+
+  TEST_CASE("metalness, roughness, normals and their strength of a .gltf come with its images") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    (void)folder.file("bumps.png", "no picture, but a file");
+    const std::string path = folder.file("plate.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+      "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+      "materials": [{"name": "steel", "normalTexture": {"index": 0, "scale": 2},
+        "pbrMetallicRoughness": {"metallicFactor": 0.5, "roughnessFactor": 0.25,
+                                 "metallicRoughnessTexture": {"index": 1}}}],
+      "textures": [{"source": 0}, {"source": 1}], "images": [{"uri": "bumps.png"}, {"uri": "worn.png"}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                     "min": [0, 0, 0], "max": [1, 1, 0]}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36,
+        "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+    const Model plate = imported(path);
+    const auto found =
+        std::find_if(plate.materials.begin(), plate.materials.end(),
+                     [](const hooke::ModelMaterial& material) { return material.name == "steel"; });
+    REQUIRE(found != plate.materials.end());
+    CHECK(found->metalness == 0.5f);
+    REQUIRE(found->roughness.has_value());
+    CHECK(*found->roughness == 0.25f);
+    CHECK(found->normal_map.file.ends_with("/bumps.png"));
+    CHECK(found->normal_scale == 2.0f);
+    // What is not there is named, and the rest goes on.
+    CHECK(found->roughness_map.file.empty());
+    CHECK(plate.missing_images == std::vector<std::string>{"worn.png"});
+  }
+
+  TEST_CASE("the relief of a .mtl is that of norm or map_Bump, and a missing image is named once") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    (void)folder.file("bumps.png", "no picture, but a file");
+    (void)folder.file("two.mtl",
+                      "newmtl a\nKd 1 0 0\nnorm bumps.png\nPm 0.5\nPr 0.25\nnewmtl b\nKd 0 1 0\n"
+                      "map_Bump -bm 0.5 BUMPS.png\nmap_Kd gone.png\nnewmtl c\nKd 0 0 1\nmap_Kd gone.png\n");
+    const std::string path = folder.file(
+        "two.obj", std::string("mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nusemtl a\nf 1 3 2\n") +
+                       "usemtl b\nf 1 2 4\nusemtl c\nf 1 4 3\nf 2 3 4\n");
+    const Model model = imported(path);
+    const auto named = [&](const char* name) -> const hooke::ModelMaterial& {
+      const auto found =
+          std::find_if(model.materials.begin(), model.materials.end(),
+                       [&](const hooke::ModelMaterial& material) { return material.name == name; });
+      REQUIRE(found != model.materials.end());
+      return *found;
+    };
+    CHECK(named("a").normal_map.file.ends_with("/bumps.png"));
+    CHECK(named("a").metalness == 0.5f);
+    CHECK(named("a").roughness == 0.25f);
+    CHECK(named("b").normal_map.file.ends_with("/bumps.png"));
+    CHECK(named("b").normal_scale == 0.5f);
+    CHECK(named("b").color == std::array{0.0f, 1.0f, 0.0f});
+    CHECK(named("c").normal_map.file.empty());
+    CHECK(model.missing_images == std::vector<std::string>{"gone.png"});
   }
 
   TEST_CASE("a mirrored node of a .gltf keeps its outside outside, and open sheets turn with it") {

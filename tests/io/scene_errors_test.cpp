@@ -208,6 +208,16 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "camera": {"path": [{"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]},)"
      R"( {"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}]}})",
      {"1:26: camera: the times of the path must increase; keyframe 1 does not"}},
+    {R"({"version": 1, "lights": [{}, {}, {}, {}, {}, {}, {}, {}, {}]})",
+     {"1:26: 'lights': a scene has at most 8, not 9"}},
+    {R"({"version": 1, "lights": [{}, {"kind": "spot"}, {}]})",
+     {"1:26: 'lights': their shadows need 13 maps, of which there are 12: six for a point light, one for any "
+      "other; set 'shadows' of some to false"}},
+    {R"({"version": 1, "lights": [{"kind": "spot", "outer_deg": 10}, {"direction": [0, 0, 0]}]})",
+     {"1:27: lights[0]: 'inner_deg' must be less than 'outer_deg'",
+      "1:62: lights[1]: 'direction' must not be zero"}},
+    {R"({"version": 1, "sky": {"sun_direction": [0, 0, 0]}})",
+     {"1:23: sky: 'sun_direction' must not be zero"}},
     {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]",)"
      R"( "op": "<", "value": 1}]})",
      {"1:42: expect[0]: this quantity needs 'point'"}},

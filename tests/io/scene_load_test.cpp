@@ -191,6 +191,13 @@ TEST_SUITE("io/scene_load") {
          R"("expect": [{"quantity": "y", "of": "b", "point": 0, "op": "<", "value": 1, "tolerance": 1}])",
          {"1:133: expect[0].point: has no effect: 'b' is a body, which has no points",
           "1:159: expect[0].tolerance: has no effect: it is for \"==\" and \"within\""}},
+        {R"("sky": {"sun": 0, "sun_direction": [1, 0, 0]}, "lights": [{"direction": [1, 0, 0], "inner_deg": 3}, )"
+         R"({"kind": "directional", "position": [1, 0, 0], "outer_deg": 40}])",
+         {"1:34: sky.sun_direction: has no effect: there is no sun",
+          "1:75: lights[0].direction: has no effect: its light goes to all sides",
+          "1:99: lights[0].inner_deg: has no effect: it is for a spot",
+          "1:140: lights[1].position: has no effect: its light comes from far away",
+          "1:163: lights[1].outer_deg: has no effect: it is for a spot"}},
         {R"("ropes": [{"stiffness": 100, "masses": 4, "repulsion_strength": 1, "repulsion_range": 0.1}])",
          {}},
     };

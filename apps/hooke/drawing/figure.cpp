@@ -23,15 +23,11 @@ constexpr std::array<float, 2> kLevelRadius = {40, 10};
 constexpr float kIronDensity = 7800;   ///< [kg/m^3]
 constexpr float kHookRadius = 0.008F;  ///< Radius of the line that shows a distance hook [m].
 const render::Color kIron = {0.56F, 0.57F, 0.58F};
-const render::Surface kIronSurface = {render::Shading::kSolid, 1, 0.5F, 0, 0, 0};
+const render::Surface kIronSurface = {render::Shading::kSolid, 1, 0.5F, 0, 0, 0, 1};
 
 float srgb_of(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
   return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
-}
-
-render::Color color_of(const std::array<float, 3>& linear) {
-  return {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])};
 }
 
 /// Returns the color of an object without a material.
@@ -63,7 +59,7 @@ float shininess_of(float roughness) {
 }
 
 Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoader& textures) {
-  Finish finish = {.color = color_of(look.color), .opacity = look.opacity, .shininess = look.shininess};
+  Finish finish = {.color = srgb_color_of(look.color), .opacity = look.opacity, .shininess = look.shininess};
   finish.metalness = look.metalness;
   finish.roughness = look.roughness ? static_cast<float>(*look.roughness) : roughness_of(look.shininess);
   if (look.roughness) finish.shininess = shininess_of(finish.roughness);
@@ -71,9 +67,14 @@ Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoa
   finish.sheen = look.sheen;
   finish.thread_pitch = static_cast<float>(look.thread_pitch.value_or(Real(0)));
   finish.hair = look.hair;
-  if (look.texture.empty()) return finish;
-  finish.texture =
-      textures((std::filesystem::path(scene.path).parent_path() / look.texture).string(), nullptr);
+  finish.relief = look.normal_scale;
+  const auto image = [&](const std::string& file, ImageUse use) -> std::shared_ptr<const render::Image> {
+    if (file.empty()) return nullptr;
+    return textures((std::filesystem::path(scene.path).parent_path() / file).string(), nullptr, use);
+  };
+  finish.texture = image(look.texture, ImageUse::kColor);
+  finish.normals = image(look.normal_map, ImageUse::kNormals);
+  finish.finish = image(look.roughness_map, ImageUse::kFinish);
   return finish;
 }
 
@@ -83,11 +84,18 @@ std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& 
   std::vector<PaintedRange> ranges;
   for (const ModelPart& part : model.parts) {
     const ModelMaterial& material = model.materials[part.material];
-    Finish finish = {.color = color_of(material.color),
+    Finish finish = {.color = srgb_color_of(material.color),
                      .opacity = material.opacity,
                      .shininess = material.shininess,
-                     .roughness = roughness_of(material.shininess)};
-    if (!material.texture.empty()) finish.texture = textures(material.texture, material.image);
+                     .metalness = material.metalness,
+                     .roughness = material.roughness.value_or(roughness_of(material.shininess))};
+    finish.relief = material.normal_scale;
+    const auto image = [&](const std::string& file, const ImageBytes& bytes, ImageUse use) {
+      return file.empty() ? nullptr : textures(file, bytes, use);
+    };
+    finish.texture = image(material.texture, material.image, ImageUse::kColor);
+    finish.normals = image(material.normal_map.file, material.normal_map.bytes, ImageUse::kNormals);
+    finish.finish = image(material.roughness_map.file, material.roughness_map.bytes, ImageUse::kFinish);
     if (part.count > 0) ranges.push_back({part.first, part.count, finish});
   }
   return ranges;
@@ -238,7 +246,8 @@ render::Surface surface_of(const Finish& finish, render::Shading shading) {
           .roughness = finish.roughness,
           .sheen = is_cloth ? finish.sheen : 0,
           .transmission = finish.transmission,
-          .threads = 0};
+          .threads = 0,
+          .relief = finish.relief};
 }
 
 /// Returns a mesh to be drawn with one finish.
@@ -248,6 +257,8 @@ render::DrawMesh painted(const PaintedRange& range, render::Shading shading) {
   mesh.first_index = range.first;
   mesh.index_count = range.count;
   mesh.texture = finish.texture;
+  mesh.normals = finish.normals;
+  mesh.finish = finish.finish;
   mesh.color = finish.color;
   mesh.opacity = finish.opacity;
   mesh.surface = surface_of(finish, shading);
@@ -362,6 +373,10 @@ void add_particles(const Figure& figure, const FigurePlace& place, render::DrawL
 }
 
 }  // namespace
+
+render::Color srgb_color_of(const std::array<float, 3>& linear) {
+  return {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])};
+}
 
 ObjectKey key_of(const SceneObject& object) {
   // The ids of other kinds are null.

@@ -27,8 +27,11 @@ struct Finish {
   float roughness = 0.6F;
   float transmission = 0;
   float sheen = 0.35F;
-  float thread_pitch = 0;  ///< [m]; 0 shows no threads.
-  bool hair = false;       ///< Whether ropes are tufts of hair.
+  float thread_pitch = 0;                             ///< [m]; 0 shows no threads.
+  std::shared_ptr<const render::Image> normals = {};  ///< See render::DrawMesh.
+  std::shared_ptr<const render::Image> finish = {};   ///< See render::DrawMesh.
+  float relief = 1;                                   ///< Strength of the normals.
+  bool hair = false;                                  ///< Whether ropes are tufts of hair.
 };
 
 /// These are consecutive triangles with one finish.
@@ -69,9 +72,16 @@ struct Figure {
   std::vector<FigureLoad> loads;        ///< Weights of ropes and cloths.
 };
 
+/// What an image says.
+enum class ImageUse : std::uint8_t {
+  kColor,
+  kNormals,  ///< An image of heights is turned into one of normals.
+  kFinish,
+};
+
 /// Returns the image of a path, or of the bytes if there are any, or null.
-using TextureLoader =
-    std::function<std::shared_ptr<const render::Image>(const std::string& path, const ImageBytes& bytes)>;
+using TextureLoader = std::function<std::shared_ptr<const render::Image>(
+    const std::string& path, const ImageBytes& bytes, ImageUse use)>;
 
 /// Tells objects of a simulation apart: its kind, and the slot and generation of its id.
 using ObjectKey = std::tuple<SceneObject::Kind, std::uint32_t, std::uint32_t>;
@@ -80,6 +90,9 @@ ObjectKey key_of(const SceneObject& object);
 /// Prepares everything about an object of a simulation that does not change.
 Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
                    BodyGeometries& geometries);
+
+/// Returns the sRGB color of a linear one.
+render::Color srgb_color_of(const std::array<float, 3>& linear);
 
 /// Returns a solid's frame and size, in the body's frame.
 Mat4 transform_of(const FigureSolid& solid);

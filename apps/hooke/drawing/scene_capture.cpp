@@ -65,15 +65,16 @@ void copy_place(const World& world, const SceneObject& object, ObjectState& stat
 }  // namespace
 
 std::shared_ptr<const render::Image> SceneCapture::find_texture(const std::string& path,
-                                                                const ImageBytes& bytes) {
-  const auto [entry, is_new] = textures_.try_emplace({path, bytes});
+                                                                const ImageBytes& bytes, ImageUse use) {
+  const auto [entry, is_new] = textures_.try_emplace({path, bytes, use});
   if (!is_new) return entry->second;
   auto image = bytes ? render::decode_image(*bytes, path) : render::load_image(path);
-  if (image) {
-    entry->second = std::make_shared<render::Image>(std::move(image).value());
-  } else {
+  if (!image) {
     warnings_.push_back(to_line(image.error()));
+    return entry->second;
   }
+  entry->second = std::make_shared<render::Image>(
+      use == ImageUse::kNormals ? render::normals_of(image.value()) : std::move(image).value());
   return entry->second;
 }
 
@@ -100,7 +101,9 @@ std::shared_ptr<Figure> SceneCapture::find_figure(const Simulation& simulation, 
   if (figure == nullptr || is_torn || is_other) {
     figure = std::make_shared<Figure>(make_figure(
         simulation, object,
-        [this](const std::string& path, const ImageBytes& bytes) { return find_texture(path, bytes); },
+        [this](const std::string& path, const ImageBytes& bytes, ImageUse use) {
+          return find_texture(path, bytes, use);
+        },
         geometries_));
     const auto painted = colors_.find(object.name);
     if (painted != colors_.end()) paint_figure(painted->second, *figure);
@@ -112,6 +115,8 @@ SceneState SceneCapture::capture(const Simulation& simulation, double time) {
   SceneState state;
   state.time = time;
   state.camera = simulation.scene().camera;
+  state.sky = simulation.scene().sky;
+  state.lights = simulation.scene().lights;
   for (const SceneObject& object : simulation.objects()) {
     if (!is_drawn(object)) continue;
     ObjectState& entry = state.objects.emplace_back();

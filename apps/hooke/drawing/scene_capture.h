@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,9 @@ struct SceneState {
   double time = 0;  ///< [s]
   std::vector<ObjectState> objects;
   std::optional<SceneCamera> camera;  ///< Camera of the scene.
-  Viewpoint automatic;                ///< View of the first state, for scenes without a camera.
+  SceneSky sky;
+  std::vector<SceneLight> lights;
+  Viewpoint automatic;  ///< View of the first state, for scenes without a camera.
 };
 
 /// Copies what pictures show out of a simulation. It reads textures and prepares the look of each object
@@ -47,12 +50,13 @@ class SceneCapture {
 
  private:
   std::shared_ptr<Figure> find_figure(const Simulation& simulation, const SceneObject& object);
-  std::shared_ptr<const render::Image> find_texture(const std::string& path, const ImageBytes& bytes);
+  std::shared_ptr<const render::Image> find_texture(const std::string& path, const ImageBytes& bytes,
+                                                    ImageUse use);
 
   BodyGeometries geometries_;
   std::map<ObjectKey, std::shared_ptr<Figure>> figures_;
   /// By path, or by the bytes of an image that a model holds.
-  std::map<std::pair<std::string, ImageBytes>, std::shared_ptr<const render::Image>> textures_;
+  std::map<std::tuple<std::string, ImageBytes, ImageUse>, std::shared_ptr<const render::Image>> textures_;
   std::map<std::string, render::Color> colors_;
   std::vector<std::string> warnings_;
   std::optional<Viewpoint> automatic_;

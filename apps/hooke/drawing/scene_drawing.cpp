@@ -26,6 +26,37 @@ DVec3 origin_near(DVec3 place) {
   return {snap(place.x), snap(place.y), snap(place.z)};
 }
 
+render::Light light_of(const SceneLight& light, const DVec3& origin) {
+  render::Light drawn;
+  switch (light.kind) {
+    case SceneLight::Kind::kDirectional:
+      drawn.kind = render::Light::Kind::kDirectional;
+      break;
+    case SceneLight::Kind::kPoint:
+      drawn.kind = render::Light::Kind::kPoint;
+      break;
+    case SceneLight::Kind::kSpot:
+      drawn.kind = render::Light::Kind::kSpot;
+      break;
+  }
+  drawn.position = vector_cast<float>(light.position - origin);
+  drawn.direction = vector_cast<float>(light.direction);
+  drawn.color = srgb_color_of(light.color);
+  drawn.intensity = static_cast<float>(light.intensity);
+  drawn.inner_deg = static_cast<float>(light.inner_deg);
+  drawn.outer_deg = static_cast<float>(light.outer_deg);
+  drawn.casts_shadow = light.shadows;
+  return drawn;
+}
+
+void set_lights(const SceneState& state, const DVec3& origin, render::DrawList& list) {
+  list.sun.intensity = static_cast<float>(state.sky.sun);
+  list.sun.direction = -vector_cast<float>(state.sky.sun_direction);
+  list.sky.brightness = static_cast<float>(state.sky.brightness);
+  list.lights.clear();
+  for (const SceneLight& light : state.lights) list.lights.push_back(light_of(light, origin));
+}
+
 }  // namespace
 
 void SceneDrawing::record(const Simulation& simulation, double time) {
@@ -72,6 +103,7 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   origin_ = origin;
   const auto local = [&](DVec3 p) { return vector_cast<float>(p - origin); };
   list.ground.reset();
+  set_lights(current_, origin, list);
   list.camera = {local(view.eye), local(view.target), {0, 1, 0}, view.vertical_fov_deg};
   const float half_fov = 0.5F * view.vertical_fov_deg * std::numbers::pi_v<float> / 180;
   const float pixel = 2 * std::tan(half_fov) / static_cast<float>(std::max(height_px, 1));

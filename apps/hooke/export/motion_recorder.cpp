@@ -141,8 +141,9 @@ Result<void> MotionRecorder::record(const Simulation& simulation, double time) {
 Result<MotionRecorder::Entry*> MotionRecorder::find_entry(const Simulation& simulation,
                                                           const SceneObject& object, const Taken& now) {
   if (const auto known = entries_.find(now.key); known != entries_.end()) return &known->second;
-  const auto load = [this](const std::string& path, const ImageBytes& bytes) {
-    return looks_.load(path, bytes);
+  // Recordings have no place for relief and finish.
+  const auto load = [this](const std::string& path, const ImageBytes& bytes, ImageUse use) {
+    return use == ImageUse::kColor ? looks_.load(path, bytes) : nullptr;
   };
   const Figure figure = make_figure(simulation, object, load, geometries_);
   if (object.kind == Kind::kBody) {

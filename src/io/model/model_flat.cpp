@@ -12,8 +12,9 @@ namespace hooke::io {
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'h', 'o', 'o', 'k', 'e', 'm', 'd', 'l'};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint32_t kNoImage = 0xFFFFFFFF;
+constexpr float kNoRoughness = -1.0f;
 // Tolerance of a squared length; rounding to float is a thousand times less.
 constexpr float kUnitTolerance = 1e-3f;
 
@@ -34,11 +35,15 @@ struct MaterialRecord {
   std::array<float, 3> color = {};
   float opacity = 0.0f;
   float shininess = 0.0f;
+  float metalness = 0.0f;
+  float roughness = kNoRoughness;
+  float normal_scale = 1.0f;
   std::uint16_t name_size = 0;
-  std::uint16_t texture_size = 0;
-  std::uint32_t image = 0;  // Number of its image, or kNoImage.
+  // Of the color, the normals, and the roughness.
+  std::array<std::uint16_t, 3> file_size = {};
+  std::array<std::uint32_t, 3> image = {};  // Numbers of the images, or kNoImage.
 };
-static_assert(sizeof(MaterialRecord) == 28 && std::is_trivially_copyable_v<MaterialRecord>);
+static_assert(sizeof(MaterialRecord) == 52 && std::is_trivially_copyable_v<MaterialRecord>);
 
 Error wrong(std::string message) {
   return {.code = ErrorCode::kOutOfRange, .message = std::move(message)};
@@ -78,7 +83,8 @@ bool is_sound(const ModelMaterial& material) {
   const auto is_fraction = [](float value) { return in_range(value, 0.0f, 1.0f); };
   return std::all_of(material.color.begin(), material.color.end(), is_fraction) &&
          is_fraction(material.opacity) && in_range(material.shininess, 0.0f, 1e6f) &&
-         is_clean_text(material.name);
+         is_fraction(material.metalness) && is_fraction(material.roughness.value_or(0.0f)) &&
+         in_range(material.normal_scale, -100.0f, 100.0f) && is_clean_text(material.name);
 }
 
 Result<void> check_parts(const Model& model) {
@@ -151,13 +157,30 @@ bool take_images(Reader& reader, std::uint32_t count, std::vector<ImageBytes>& i
 bool take_material(Reader& reader, const std::vector<ImageBytes>& images, ModelMaterial& material) {
   MaterialRecord record;
   if (!reader.take(&record, sizeof(record))) return false;
-  if (record.image != kNoImage && record.image >= images.size()) return false;
-  if (record.image != kNoImage) material.image = images[record.image];
+  const std::array<ImageBytes*, 3> targets = {&material.image, &material.normal_map.bytes,
+                                              &material.roughness_map.bytes};
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (record.image[i] == kNoImage) continue;
+    if (record.image[i] >= images.size()) return false;
+    *targets[i] = images[record.image[i]];
+  }
   material.color = record.color;
   material.opacity = record.opacity;
   material.shininess = record.shininess;
+  material.metalness = record.metalness;
+  if (record.roughness != kNoRoughness) material.roughness = record.roughness;
+  material.normal_scale = record.normal_scale;
   return reader.take_text(material.name, record.name_size) &&
-         reader.take_text(material.texture, record.texture_size);
+         reader.take_text(material.texture, record.file_size[0]) &&
+         reader.take_text(material.normal_map.file, record.file_size[1]) &&
+         reader.take_text(material.roughness_map.file, record.file_size[2]);
+}
+
+/// Returns the images of a material and the names of their files, in the order of the record.
+std::array<std::pair<const ImageBytes*, const std::string*>, 3> images_of(const ModelMaterial& material) {
+  return {{{&material.image, &material.texture},
+           {&material.normal_map.bytes, &material.normal_map.file},
+           {&material.roughness_map.bytes, &material.roughness_map.file}}};
 }
 
 void put_bytes(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
@@ -218,8 +241,9 @@ Result<void> check_model(const Model& model) {
 std::vector<std::byte> write_flat_model(const Model& model) {
   std::vector<ImageBytes> images;  // Each once, however many materials share it.
   for (const ModelMaterial& material : model.materials) {
-    if (material.image && std::find(images.begin(), images.end(), material.image) == images.end())
-      images.push_back(material.image);
+    for (const auto& [image, file] : images_of(material)) {
+      if (*image && std::find(images.begin(), images.end(), *image) == images.end()) images.push_back(*image);
+    }
   }
   const Header header = {.vertex_count = static_cast<std::uint32_t>(model.vertices.size()),
                          .index_count = static_cast<std::uint32_t>(model.indices.size()),
@@ -228,7 +252,7 @@ std::vector<std::byte> write_flat_model(const Model& model) {
                          .image_count = static_cast<std::uint32_t>(images.size())};
   std::vector<std::byte> bytes;
   bytes.reserve(sizeof(Header) + model.vertices.size() * sizeof(ModelVertex) + model.indices.size() * 4 +
-                model.parts.size() * sizeof(ModelPart) + model.materials.size() * 64);
+                model.parts.size() * sizeof(ModelPart) + model.materials.size() * 96);
   put_bytes(bytes, &header, sizeof(header));
   put_bytes(bytes, model.vertices.data(), model.vertices.size() * sizeof(ModelVertex));
   put_bytes(bytes, model.indices.data(), model.indices.size() * sizeof(std::uint32_t));
@@ -239,19 +263,24 @@ std::vector<std::byte> write_flat_model(const Model& model) {
     put_bytes(bytes, image->data(), image->size());
   }
   for (const ModelMaterial& material : model.materials) {
-    const MaterialRecord record = {
-        .color = material.color,
-        .opacity = material.opacity,
-        .shininess = material.shininess,
-        .name_size = static_cast<std::uint16_t>(material.name.size()),
-        .texture_size = static_cast<std::uint16_t>(material.texture.size()),
-        .image = material.image
-                     ? static_cast<std::uint32_t>(std::find(images.begin(), images.end(), material.image) -
-                                                  images.begin())
-                     : kNoImage};
+    MaterialRecord record = {.color = material.color,
+                             .opacity = material.opacity,
+                             .shininess = material.shininess,
+                             .metalness = material.metalness,
+                             .roughness = material.roughness.value_or(kNoRoughness),
+                             .normal_scale = material.normal_scale,
+                             .name_size = static_cast<std::uint16_t>(material.name.size())};
+    const auto all = images_of(material);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const ImageBytes& image = *all[i].first;
+      record.file_size[i] = static_cast<std::uint16_t>(all[i].second->size());
+      record.image[i] =
+          image ? static_cast<std::uint32_t>(std::find(images.begin(), images.end(), image) - images.begin())
+                : kNoImage;
+    }
     put_bytes(bytes, &record, sizeof(record));
     put_bytes(bytes, material.name.data(), material.name.size());
-    put_bytes(bytes, material.texture.data(), material.texture.size());
+    for (const auto& [image, file] : all) put_bytes(bytes, file->data(), file->size());
   }
   return bytes;
 }
@@ -274,13 +303,15 @@ Result<Model> read_flat_model(std::span<const std::byte> bytes) {
     return wrong("a flat model that ends early");
   }
   std::vector<ImageBytes> images;
-  if (header.image_count > header.material_count || !take_images(reader, header.image_count, images)) {
+  if (header.image_count / 3 > header.material_count || !take_images(reader, header.image_count, images)) {
     return wrong("a flat model with a bad image");
   }
   for (std::uint32_t i = 0; i < header.material_count; ++i) {
     if (!take_material(reader, images, model.materials.emplace_back()))
       return wrong("a flat model that ends early");
-    if (!is_bare_file_name(model.materials.back().texture)) return wrong("a texture that is no file name");
+    for (const auto& [image, file] : images_of(model.materials.back())) {
+      if (!is_bare_file_name(*file)) return wrong("a texture that is no file name");
+    }
   }
   if (!reader.is_empty()) return wrong("a flat model with bytes left over");
   if (auto sound = check_model(model); !sound) return sound.error();

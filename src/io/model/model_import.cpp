@@ -51,11 +51,22 @@ std::string find_image(const fs::path& folder, const std::string& name) {
   return best.empty() ? std::string() : (folder / best).string();
 }
 
+/// Looks for the files that materials name. What is not there is left out, and named.
 void find_textures(Model& model, const fs::path& path) {
   const std::string ending = lower(path.extension().string());
+  const auto find = [&](std::string& file, const ImageBytes& bytes) {
+    if (file.empty() || bytes) return;
+    std::string found = find_image(path.parent_path(), file);
+    std::vector<std::string>& missing = model.missing_images;
+    if (found.empty() && std::find(missing.begin(), missing.end(), file) == missing.end())
+      missing.push_back(file);
+    file = std::move(found);
+  };
   for (ModelMaterial& material : model.materials) {
+    find(material.normal_map.file, material.normal_map.bytes);
+    find(material.roughness_map.file, material.roughness_map.bytes);
     if (material.texture.empty() || material.image) continue;
-    material.texture = find_image(path.parent_path(), material.texture);
+    find(material.texture, material.image);
     // glTF multiplies image and color; in the older formats the image replaces the color.
     const bool replaces_color = ending != ".gltf" && ending != ".glb";
     if (!material.texture.empty() && replaces_color) material.color = {1.0f, 1.0f, 1.0f};

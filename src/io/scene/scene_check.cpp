@@ -617,6 +617,8 @@ void Checker::check_files(bool look) {
   for (const SceneMesh& mesh : scene_.meshes) check(mesh.file, "meshes." + mesh.name + ".file");
   for (const SceneMaterial& material : scene_.materials) {
     check(material.texture, "materials." + material.name + ".texture");
+    check(material.normal_map, "materials." + material.name + ".normal_map");
+    check(material.roughness_map, "materials." + material.name + ".roughness_map");
   }
 }
 

@@ -25,6 +25,8 @@ class IgnoredKeys {
   void check(const SceneHook& hook, const std::string& path);
   void check(const SceneObjects& objects, const std::string& prefix);
   void check(const SceneCamera& camera);
+  void check(const SceneSky& sky);
+  void check(const SceneLight& light, const std::string& path);
   void check(const SceneExpectation& expectation, const std::string& path);
 
   [[nodiscard]] std::vector<JsonError> take() { return std::move(found_); }
@@ -176,6 +178,16 @@ void IgnoredKeys::check(const SceneCamera& camera) {
   ignore("camera", {"eye", "target"}, !camera.path.empty(), "'path' replaces it");
 }
 
+void IgnoredKeys::check(const SceneSky& sky) {
+  ignore("sky", {"sun_direction"}, sky.sun == Real(0), "there is no sun");
+}
+
+void IgnoredKeys::check(const SceneLight& light, const std::string& path) {
+  ignore(path, {"position"}, light.kind == SceneLight::Kind::kDirectional, "its light comes from far away");
+  ignore(path, {"direction"}, light.kind == SceneLight::Kind::kPoint, "its light goes to all sides");
+  ignore(path, {"inner_deg", "outer_deg"}, light.kind != SceneLight::Kind::kSpot, "it is for a spot");
+}
+
 void IgnoredKeys::check(const SceneExpectation& expectation, const std::string& path) {
   const bool has_tolerance =
       expectation.op == SceneExpectation::Op::kEqual || expectation.op == SceneExpectation::Op::kWithin;
@@ -197,6 +209,8 @@ std::vector<JsonError> find_ignored_keys(const Scene& scene, const JsonDocument&
     }
   }
   if (scene.camera) ignored.check(*scene.camera);
+  if (document.root.find("sky") != nullptr) ignored.check(scene.sky);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) ignored.check(scene.lights[i], indexed("lights", i));
   for (std::size_t i = 0; i < scene.expect.size(); ++i) {
     ignored.check(scene.expect[i], indexed("expect", i));
   }

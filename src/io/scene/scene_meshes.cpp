@@ -122,6 +122,11 @@ void build_meshes(SimulationData& data, std::vector<Error>& errors) {
       continue;
     }
     auto model = std::make_shared<Model>(std::move(read).value());
+    for (const std::string& image : model->missing_images) {
+      data.warnings.push_back(
+          error_at(data.scene.source.get(), path + ".file", ErrorCode::kFileNotReadable,
+                   "its image " + in_quotes(image) + " is not beside it, and is left out: put it there"));
+    }
     const Result<MeshId> added = data.world.add_mesh(model->mesh, mesh.tree);
     if (!added) {
       errors.push_back(scene_error(data.scene, path, added.error()));

@@ -170,16 +170,39 @@ std::vector<Field> scene_rows() {
   for (const Field& row : object_rows<&Scene::objects>()) rows.push_back(row);
   rows.push_back(field<&Scene::timeline>("timeline", "", kAny, "What happens on the way."));
   rows.push_back(field<&Scene::camera>("camera", "", kAny, "Where a viewer stands."));
+  rows.push_back(field<&Scene::sky>("sky", "", kAny, "The sky and the sun in it."));
+  rows.push_back(field<&Scene::lights>("lights", "", kAny, "Lights besides the sun, at most 8."));
   rows.push_back(field<&Scene::expect>("expect", "", kAny, "Figures that the scene promises."));
   return rows;
+}
+
+bool check_scene(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& lights = static_cast<const Scene*>(object)->lights;
+  const JsonNode* list = node.find("lights");
+  if (list == nullptr) return true;
+  if (lights.size() > kMostLights) {
+    return reader.fail(*list, ErrorCode::kLimitExceeded,
+                       "'lights': a scene has at most 8, not " + std::to_string(lights.size()));
+  }
+  std::size_t maps = 0;
+  for (const SceneLight& light : lights)
+    maps += light.shadows ? light.kind == SceneLight::Kind::kPoint ? 6 : 1 : 0;
+  if (maps <= kMostLightMaps) return true;
+  return reader.fail(*list, ErrorCode::kLimitExceeded,
+                     "'lights': their shadows need " + std::to_string(maps) +
+                         " maps, of which there are 12: six for a point light, one for any other; set "
+                         "'shadows' of some to false");
 }
 
 }  // namespace
 
 template <>
 const Kind& kind_of<Scene>() {
-  static const Kind kind = {
-      .name = "scene", .help = "The file.", .fields = scene_rows(), .defaults = defaults_of<Scene>};
+  static const Kind kind = {.name = "scene",
+                            .help = "The file.",
+                            .fields = scene_rows(),
+                            .defaults = defaults_of<Scene>,
+                            .check = check_scene};
   return kind;
 }
 
@@ -299,6 +322,14 @@ const Kind& kind_of<SceneMaterial>() {
       .fields = {field<&SceneMaterial::color>("color", "", between(0, 1), "Red, green, blue, linear."),
                  field<&SceneMaterial::texture>("texture", "", kNotEmpty,
                                                 "An image, relative to the scene file."),
+                 field<&SceneMaterial::normal_map>(
+                     "normal_map", "", kNotEmpty,
+                     "An image of normals (red right, green up, blue outward), or of heights in grays."),
+                 field<&SceneMaterial::normal_scale>("normal_scale", "", between(-100, 100),
+                                                     "Strength of its relief; negative turns it inward."),
+                 field<&SceneMaterial::roughness_map>(
+                     "roughness_map", "", kNotEmpty,
+                     "An image whose green multiplies `roughness`, and whose blue `metalness`."),
                  field<&SceneMaterial::shininess>("shininess", "", between(1, 1000),
                                                   "Blinn-Phong exponent, without a `roughness`."),
                  field<&SceneMaterial::opacity>("opacity", "", between(0, 1), "1 hides what is behind."),
@@ -323,6 +354,15 @@ const Kind& kind_of<SceneMaterial>() {
                      "poisson_ratio", "", between(0, 0.499), "Of solids that do not give it themselves."),
                  field<&SceneMaterial::areal_density>("areal_density", "kg/m^2", kPositive,
                                                       "Of cloths that give no mass themselves."),
+                 field<&SceneMaterial::stretch_stiffness>(
+                     "stretch_stiffness", "N/m", kPositive,
+                     "Of cloths that do not give it themselves: force per width over strain."),
+                 field<&SceneMaterial::shear_stiffness>(
+                     "shear_stiffness", "N/m", kPositive,
+                     "Of cloths that do not give it themselves: force per width over the angle [rad]."),
+                 field<&SceneMaterial::bend_stiffness>(
+                     "bend_stiffness", "N m", kPositive,
+                     "Of cloths that do not give it themselves and do not bend by springs."),
                  field<&SceneMaterial::linear_density>("linear_density", "kg/m", kPositive,
                                                        "Of ropes that give no mass themselves."),
                  field<&SceneMaterial::diameter>("diameter", "m", kPositive,
@@ -436,6 +476,73 @@ const Kind& kind_of<SceneKeyframe>() {
   return kind;
 }
 
+namespace {
+
+bool check_sky(Reader& reader, const JsonNode& node, const void* object) {
+  if (length(static_cast<const SceneSky*>(object)->sun_direction) > Real(0)) return true;
+  return reader.fail(node, ErrorCode::kOutOfRange, "'sun_direction' must not be zero");
+}
+
+bool check_light(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& light = *static_cast<const SceneLight*>(object);
+  if (!(length(light.direction) > Real(0)))
+    return reader.fail(node, ErrorCode::kOutOfRange, "'direction' must not be zero");
+  if (light.inner_deg < light.outer_deg) return true;
+  return reader.fail(node, ErrorCode::kOutOfRange, "'inner_deg' must be less than 'outer_deg'");
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<SceneSky>() {
+  static const Kind kind = {
+      .name = "sky",
+      .help = "The sky and the sun in it.",
+      .fields = {field<&SceneSky::brightness>("brightness", "", between(0, 10),
+                                              "Of the sky and of its light, over the usual; 0 is night."),
+                 field<&SceneSky::sun>("sun", "", between(0, 10), "Of the sun, over the usual."),
+                 field<&SceneSky::sun_direction>("sun_direction", "", kAny, "In which its light goes.")},
+      .defaults = defaults_of<SceneSky>,
+      .check = check_sky};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneLight>() {
+  static const Kind kind = {
+      .name = "light",
+      .help = "A light besides the sun.",
+      .fields =
+          {field<&SceneLight::kind>("kind", "", kAny,
+                                    "From far away, from a place to all sides, or within a cone."),
+           field<&SceneLight::position>("position", "m", kAny, "Of a point and a spot."),
+           field<&SceneLight::direction>("direction", "", kAny, "In which its light goes."),
+           field<&SceneLight::color>("color", "", between(0, 1), "Red, green, blue, linear."),
+           field<&SceneLight::intensity>(
+               "intensity", "", between(0, 1e6),
+               "1 is as bright as the usual sun, of a point and a spot at 1 m; it falls off by the "
+               "square."),
+           field<&SceneLight::inner_deg>("inner_deg", "degrees", between(0, 80),
+                                         "Half angle within which a spot is as bright as in its middle."),
+           field<&SceneLight::outer_deg>("outer_deg", "degrees", between(0, 80),
+                                         "Half angle beyond which there is none of its light."),
+           field<&SceneLight::shadows>(
+               "shadows", "", kAny,
+               "Whether things shadow one another from it; 12 maps are shared: six for a point, one for "
+               "any other.")},
+      .defaults = defaults_of<SceneLight>,
+      .check = check_light};
+  return kind;
+}
+
+template <>
+std::span<const EnumName> names_of<SceneLight::Kind>() {
+  static constexpr EnumName kNames[] = {{"directional", static_cast<int>(SceneLight::Kind::kDirectional)},
+                                        {"point", static_cast<int>(SceneLight::Kind::kPoint)},
+                                        {"spot", static_cast<int>(SceneLight::Kind::kSpot)}};
+  return kNames;
+}
+
 template <>
 const Kind& kind_of<SceneExpectation>() {
   static const Kind kind = {
@@ -519,11 +626,11 @@ std::span<const Kind* const> all_kinds() {
     list.insert(list.end(), hook_kinds().begin(), hook_kinds().end());
     list.insert(list.end(), object_kinds().begin(), object_kinds().end());
     const std::initializer_list<const Kind*> last = {
-        &kind_of<SceneEvent>(),      &kind_of<SceneObjects>(), &motion_event_kind(),
-        &unpin_event_kind(),         &force_event_kind(),      &impulse_event_kind(),
-        &velocity_event_kind(),      &motor_event_kind(),      &spring_event_kind(),
-        &steering_event_kind(),      &kind_of<SceneCamera>(),  &kind_of<SceneKeyframe>(),
-        &kind_of<SceneExpectation>()};
+        &kind_of<SceneEvent>(), &kind_of<SceneObjects>(), &motion_event_kind(),
+        &unpin_event_kind(),    &force_event_kind(),      &impulse_event_kind(),
+        &velocity_event_kind(), &motor_event_kind(),      &spring_event_kind(),
+        &steering_event_kind(), &kind_of<SceneCamera>(),  &kind_of<SceneKeyframe>(),
+        &kind_of<SceneSky>(),   &kind_of<SceneLight>(),   &kind_of<SceneExpectation>()};
     list.insert(list.end(), last);
     return list;
   }();

@@ -123,6 +123,10 @@ const Kind& kind_of<SceneCamera>();
 template <>
 const Kind& kind_of<SceneKeyframe>();
 template <>
+const Kind& kind_of<SceneSky>();
+template <>
+const Kind& kind_of<SceneLight>();
+template <>
 const Kind& kind_of<SceneAccuracy>();
 template <>
 const Kind& kind_of<SceneExpectation>();
@@ -135,6 +139,8 @@ template <>
 std::span<const EnumName> names_of<ModelOrigin>();
 template <>
 std::span<const EnumName> names_of<UpAxis>();
+template <>
+std::span<const EnumName> names_of<SceneLight::Kind>();
 template <>
 std::span<const EnumName> names_of<BodyKind>();
 template <>

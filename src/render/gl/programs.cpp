@@ -11,6 +11,8 @@ Result<void> build(GlName& program, const std::string& title, const ShaderSource
   const GLuint name = program.name();
   const GLuint frame = glGetUniformBlockIndex(name, "Frame");
   if (frame != GL_INVALID_INDEX) glUniformBlockBinding(name, frame, 0);
+  const GLuint lights = glGetUniformBlockIndex(name, "Lights");
+  if (lights != GL_INVALID_INDEX) glUniformBlockBinding(name, lights, 1);
   glUseProgram(name);
   const auto bind_sampler = [name](const char* sampler, TextureUnit unit) {
     const GLint location = glGetUniformLocation(name, sampler);
@@ -23,19 +25,27 @@ Result<void> build(GlName& program, const std::string& title, const ShaderSource
   bind_sampler("shadow_depth", kShadowDepthUnit);
   bind_sampler("occlusion_map", kOcclusionUnit);
   bind_sampler("noise_map", kNoiseUnit);
+  bind_sampler("normals_map", kNormalsUnit);
+  bind_sampler("finish_map", kFinishUnit);
+  bind_sampler("light_maps", kLightMapsUnit);
   return {};
+}
+
+Result<void> build_mesh(Programs& p, std::size_t look, MeshImages images, bool fast) {
+  const auto kind = static_cast<MeshLook>(look);
+  // Ropes and hairs have no texture.
+  if (images != MeshImages::kNone && (kind == MeshLook::kRope || kind == MeshLook::kHair)) return {};
+  MeshProgram& mesh = p.meshes[look][static_cast<std::size_t>(images)];
+  auto built = build(mesh.program, "mesh", mesh_shader(kind, images, fast));
+  if (built) mesh.alpha_mode = glGetUniformLocation(mesh.program.name(), "alpha_mode");
+  return built;
 }
 
 Result<void> build_meshes(Programs& p, bool fast) {
   for (std::size_t look = 0; look < kMeshLooks; ++look) {
-    for (std::size_t textured = 0; textured < 2; ++textured) {
-      MeshProgram& mesh = p.meshes[look][textured];
-      const auto kind = static_cast<MeshLook>(look);
-      // Ropes and hairs have no texture.
-      if (textured != 0 && (kind == MeshLook::kRope || kind == MeshLook::kHair)) continue;
-      auto built = build(mesh.program, "mesh", mesh_shader(kind, textured != 0, fast));
+    for (const MeshImages images : {MeshImages::kNone, MeshImages::kColor}) {
+      auto built = build_mesh(p, look, images, fast);
       if (!built) return built;
-      mesh.alpha_mode = glGetUniformLocation(mesh.program.name(), "alpha_mode");
     }
   }
   return {};
@@ -58,6 +68,16 @@ void find_ground(GroundProgram& ground) {
 }
 
 }  // namespace
+
+Result<void> make_detailed_programs(Programs& programs, bool fast) {
+  const auto solid = static_cast<std::size_t>(MeshLook::kSolid);
+  if (programs.meshes[solid][static_cast<std::size_t>(MeshImages::kAll)].program.name() != 0) return {};
+  for (std::size_t look = 0; look < kMeshLooks; ++look) {
+    auto built = build_mesh(programs, look, MeshImages::kAll, fast);
+    if (!built) return built;
+  }
+  return {};
+}
 
 Result<Programs> make_programs(bool fast) {
   Programs p;

@@ -14,6 +14,9 @@ enum TextureUnit : GLuint {
   kShadowDepthUnit,  ///< The shadow map's depths.
   kOcclusionUnit,
   kNoiseUnit,
+  kNormalsUnit,    ///< Normals of the surface.
+  kFinishUnit,     ///< Roughness and metalness of the surface.
+  kLightMapsUnit,  ///< The shadow maps of lights besides the sun, which compare.
   kTextureUnits,
 };
 
@@ -40,7 +43,8 @@ struct GroundProgram {
 
 /// These are all compiled shaders.
 struct Programs {
-  std::array<std::array<MeshProgram, 2>, kMeshLooks> meshes;  ///< By look; without and with a texture.
+  /// By look; without a texture, with one, and with relief and finish, which are made when first used.
+  std::array<std::array<MeshProgram, 3>, kMeshLooks> meshes;
   GlName shadow;
   HoledProgram holed_shadow;
   GlName depth;
@@ -61,5 +65,8 @@ struct Programs {
 /// Compiles all shaders, or returns the first error of the driver's compiler. Fast ones leave out soft
 /// shadows and fine grain.
 Result<Programs> make_programs(bool fast);
+
+/// Compiles the shaders of meshes with relief and finish, if they are not there.
+Result<void> make_detailed_programs(Programs& programs, bool fast);
 
 }  // namespace hooke::render

@@ -184,10 +184,83 @@ float sun_visibility(vec3 point, vec3 normal, float n_dot_l) {
 }
 )";
 
+constexpr const char* kLightsPart = R"(
+layout(std140) uniform Lights {
+  vec4 light_count;       // lights, size of a map in texels, rows of maps
+  vec4 light_place[8];    // place and 1, or the direction to a light from far away and 0
+  vec4 light_beam[8];     // direction in which it shines, cosine beyond which it is dark
+  vec4 light_color[8];    // linear; one over the width of the rim, as a cosine
+  vec4 light_map[8];      // first map or -1, number of maps, texel [m], of those with a place at 1 m
+  mat4 light_matrix[12];  // to the space of a map
+};
+uniform sampler2DShadow light_maps;
+
+struct Source {
+  vec3 toward;  // direction to the light
+  vec3 color;   // what arrives without shadows
+  float away;   // distance, 1 for a light from far away
+};
+
+// Falloff by the square, and a cone with a soft rim: KHR_lights_punctual (Khronos Group 2018).
+Source source_at(int i, vec3 point) {
+  vec4 place = light_place[i];
+  vec3 way = place.xyz - place.w * point;
+  float squared = max(dot(way, way), 1e-4);
+  Source source;
+  source.toward = way * inversesqrt(squared);
+  source.away = mix(1.0, sqrt(squared), place.w);
+  float rim = clamp((dot(-source.toward, light_beam[i].xyz) - light_beam[i].w) * light_color[i].w, 0.0, 1.0);
+  source.color = light_color[i].rgb * (rim * rim * mix(1.0, 1.0 / squared, place.w));
+  return source;
+}
+
+// Which of the six maps of a point light looks along a direction.
+float side_of(vec3 way) {
+  vec3 size = abs(way);
+  if (size.x >= size.y && size.x >= size.z) return way.x > 0.0 ? 0.0 : 1.0;
+  if (size.y >= size.z) return way.y > 0.0 ? 2.0 : 3.0;
+  return way.z > 0.0 ? 4.0 : 5.0;
+}
+
+// How much of a light reaches a point: a 3 x 3 tent from four bilinear taps (Castano, "Shadow mapping summary",
+// 2013). The point is moved along the normal by what the filter reaches over, as for the sun.
+float source_visibility(int i, vec3 point, vec3 normal, Source source, float n_dot_l) {
+  vec4 map = light_map[i];
+  float slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+  vec3 moved = point + normal * (map.z * source.away * (0.4 + 1.4 * slope));
+  float number = max(map.x, 0.0) + (map.y > 1.5 ? side_of(moved - light_place[i].xyz) : 0.0);
+  vec4 place = light_matrix[int(number)] * vec4(moved, 1.0);
+  place.xyz /= max(place.w, 1e-6);
+  bool inside = all(greaterThan(place.xy, vec2(0.0))) && all(lessThan(place.xy, vec2(1.0))) && place.w > 0.0;
+  bool is_open = map.x >= 0.0 && n_dot_l > 0.0 && inside;
+  float size = light_count.y;
+  vec2 texel = clamp(place.xy * size, 2.0, size - 2.0);
+  vec2 base = floor(texel + 0.5);
+  vec2 part = texel + 0.5 - base;
+  base -= 0.5;
+  vec2 w0 = 3.0 - 2.0 * part;
+  vec2 w1 = 1.0 + 2.0 * part;
+  vec2 tile = vec2(mod(number, 4.0), floor(number / 4.0)) * size;
+  vec2 all_size = vec2(4.0, light_count.z) * size;
+  vec2 p0 = (tile + base + (2.0 - part) / w0 - 1.0) / all_size;
+  vec2 p1 = (tile + base + part / w1 + 1.0) / all_size;
+  float depth = min(place.z, 1.0);
+  // A loop that may run zero times: software drivers compute both sides of an if, but leave a loop.
+  float sum = 0.0;
+  int rows = is_open ? 2 : 0;
+  for (int row = 0; row < rows; ++row) {
+    float y = row == 0 ? p0.y : p1.y;
+    sum += (row == 0 ? w0.y : w1.y) * (w0.x * textureLod(light_maps, vec3(p0.x, y, depth), 0.0) +
+                                       w1.x * textureLod(light_maps, vec3(p1.x, y, depth), 0.0));
+  }
+  return rows > 0 ? sum / 16.0 : 1.0;
+}
+)";
+
 }  // namespace
 
 std::string shadow_part() {
-  return kShadowPart;
+  return std::string(kShadowPart) + kLightsPart;
 }
 
 std::string reflection_part() {
@@ -208,13 +281,13 @@ vec3 mirrored_share(vec3 f0, float roughness, float n_dot_v) {
   return f0 * ab.x + ab.y;
 }
 
-// What a surface throws back of the sun, for white light of strength one: the microfacets of Trowbridge and
+// What a surface throws back of a light, for white light of strength one: the microfacets of Trowbridge and
 // Reitz, "GGX" (Walter and others 2007), with the shadowing of Hammon (2017) and the Fresnel term of Schlick
 // (1994). It is relative to a white matte surface, so pi cancels.
-vec3 sun_highlight(vec3 f0, float roughness, vec3 n, vec3 v, float n_dot_l, float n_dot_v) {
-  vec3 h = normalize(sun_direction.xyz + v);
+vec3 highlight_of(vec3 l, vec3 f0, float roughness, vec3 n, vec3 v, float n_dot_l, float n_dot_v) {
+  vec3 h = normalize(l + v);
   float n_dot_h = clamp(dot(n, h), 0.0, 1.0);
-  float l_dot_h = clamp(dot(sun_direction.xyz, h), 0.0, 1.0);
+  float l_dot_h = clamp(dot(l, h), 0.0, 1.0);
   float a = max(roughness * roughness, 0.003);
   float q = n_dot_h * n_dot_h * (a * a - 1.0) + 1.0;
   float spread = a * a / (q * q);
@@ -239,7 +312,15 @@ Light light_at(vec3 f0, float roughness, vec3 n, vec3 v, vec3 point) {
   Light light;
   light.inner = sky_irradiance(n) * seen + sun;
   vec3 mirrored = mirrored_sky(reflect(-v, n), roughness) * mirrored_share(f0, roughness, n_dot_v);
-  light.outer = mirrored * seen + sun * sun_highlight(f0, roughness, n, v, facing, n_dot_v);
+  light.outer = mirrored * seen + sun * highlight_of(sun_direction.xyz, f0, roughness, n, v, facing, n_dot_v);
+  int sources = int(light_count.x);
+  for (int i = 0; i < sources; ++i) {
+    Source source = source_at(i, point);
+    float toward = clamp(dot(n, source.toward), 0.0, 1.0);
+    vec3 strength = source.color * toward * source_visibility(i, point, n, source, toward) * (0.6 + 0.4 * seen);
+    light.inner += strength;
+    light.outer += strength * highlight_of(source.toward, f0, roughness, n, v, toward, n_dot_v);
+  }
   return light;
 }
 )";
@@ -255,7 +336,7 @@ layout(location = 4) in vec4 row_y;
 layout(location = 5) in vec4 row_z;
 layout(location = 6) in vec4 color;    // linear, alpha is the opacity
 layout(location = 7) in vec4 surface;  // metalness, roughness, sheen, threads
-layout(location = 8) in float clear;   // transmission
+layout(location = 8) in vec2 clear;    // transmission, strength of the relief
 vec3 world_position() {
   vec4 p = vec4(position, 1.0);
   return vec3(dot(row_x, p), dot(row_y, p), dot(row_z, p));

@@ -12,7 +12,7 @@ out vec3 surface_normal;
 out vec2 texture_place;
 flat out vec4 tint;
 flat out vec4 finish;
-flat out float glass;
+flat out vec2 glass;
 void main() {
   point = world_position();
   // The cofactors turn normals the right way under uneven scale; a mirror would turn them inside out.
@@ -35,7 +35,7 @@ in vec3 surface_normal;
 in vec2 texture_place;
 flat in vec4 tint;
 flat in vec4 finish;  // metalness, roughness, sheen, threads
-flat in float glass;  // share of the light that goes through
+flat in vec2 glass;  // share of the light that goes through, strength of the relief
 uniform sampler2D surface_texture;
 uniform int alpha_mode;  // AlphaMode
 layout(location = 0, index = 0) out vec4 result;
@@ -61,14 +61,50 @@ vec4 surface_color() {
 )";
 }
 
+/// The normal and the finish of the surface, with what images say of them.
+std::string detail_part(bool detailed) {
+  if (!detailed)
+    return R"(
+vec3 shaded_normal(vec3 n) { return n; }
+vec2 shaded_finish() { return finish.xy; }
+)";
+  return R"(
+uniform sampler2D normals_map;
+uniform sampler2D finish_map;
+// Tangents by the derivatives of the texture's coordinates: Schueler, "Normal mapping without precomputed
+// tangents", ShaderX 5, 2006.
+vec3 shaded_normal(vec3 n) {
+  vec3 px = dFdx(point);
+  vec3 py = dFdy(point);
+  vec2 ux = dFdx(texture_place);
+  vec2 uy = dFdy(texture_place);
+  vec3 gx = cross(py, n);
+  vec3 gy = cross(n, px);
+  float side = dot(px, gx) < 0.0 ? -1.0 : 1.0;
+  vec3 along_u = side * (gx * ux.x + gy * uy.x);
+  vec3 along_v = side * (gx * ux.y + gy * uy.y);
+  float longest = max(dot(along_u, along_u), dot(along_v, along_v));
+  // 128 of 255 is zero, exactly.
+  vec3 map = texture(normals_map, texture_place).xyz * (255.0 / 127.0) - 128.0 / 127.0;
+  vec2 across = glass.y * map.xy * inversesqrt(max(longest, 1e-30));
+  return normalize(across.x * along_u + across.y * along_v + max(map.z, 0.02) * n);
+}
+vec2 shaded_finish() {
+  vec4 texel = texture(finish_map, texture_place);
+  return finish.xy * texel.bg;
+}
+)";
+}
+
 const std::string kSolidFragment = R"(
 void main() {
   vec4 albedo = surface_color();
-  vec3 n = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
+  vec2 made = shaded_finish();
+  vec3 n = shaded_normal(normalize(gl_FrontFacing ? surface_normal : -surface_normal));
   vec3 v = normalize(eye.xyz - point);
-  vec3 f0 = mix(vec3(0.04), albedo.rgb, finish.x);
-  Light light = light_at(f0, finish.y, n, v, point);
-  vec3 color = albedo.rgb * (1.0 - finish.x) * light.inner + light.outer;
+  vec3 f0 = mix(vec3(0.04), albedo.rgb, made.x);
+  Light light = light_at(f0, made.y, n, v, point);
+  vec3 color = albedo.rgb * (1.0 - made.x) * light.inner + light.outer;
   result = vec4(shown(with_haze(color, distance(eye.xyz, point))), albedo.a);
 }
 )";
@@ -79,18 +115,19 @@ const std::string kClearFragment = R"(
 layout(location = 0, index = 1) out vec4 passed;
 void main() {
   vec4 albedo = surface_color();
-  vec3 n = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
+  vec2 made = shaded_finish();
+  vec3 n = shaded_normal(normalize(gl_FrontFacing ? surface_normal : -surface_normal));
   vec3 v = normalize(eye.xyz - point);
-  vec3 f0 = mix(vec3(0.04), albedo.rgb, finish.x);
-  Light light = light_at(f0, finish.y, n, v, point);
+  vec3 f0 = mix(vec3(0.04), albedo.rgb, made.x);
+  Light light = light_at(f0, made.y, n, v, point);
   float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
   float mirrors = 0.04 + 0.96 * away * away * away * away * away;
-  vec3 inner = albedo.rgb * (1.0 - finish.x) * light.inner * (1.0 - glass);
+  vec3 inner = albedo.rgb * (1.0 - made.x) * light.inner * (1.0 - glass.x);
   // Light that entered elsewhere leaves jelly all over its surface, more so where it is thin.
-  inner += glass * (0.15 + 0.35 * away) * albedo.rgb * albedo.rgb * sky_irradiance(-v);
+  inner += glass.x * (0.15 + 0.35 * away) * albedo.rgb * albedo.rgb * sky_irradiance(-v);
   vec3 color = tone_mapped(with_haze(inner + light.outer, distance(eye.xyz, point)));
   vec3 stain = mix(vec3(1.0), albedo.rgb, 0.45 + 0.55 * away);
-  vec3 share = mix(vec3(1.0), glass * (1.0 - mirrors) * stain, albedo.a);
+  vec3 share = mix(vec3(1.0), glass.x * (1.0 - mirrors) * stain, albedo.a);
   // The picture holds encoded colors. A product stays one, nearly; a sum is right for a gray of a quarter behind.
   vec3 behind = 0.25 * share;
   result = vec4(encoded(albedo.a * color + behind) - encoded(behind), 1.0);
@@ -115,7 +152,8 @@ float weave(vec2 place, float threads) {
 void main() {
   vec4 albedo = surface_color();
   albedo.rgb *= weave(texture_place, finish.w);
-  vec3 n = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
+  vec2 made = shaded_finish();
+  vec3 n = shaded_normal(normalize(gl_FrontFacing ? surface_normal : -surface_normal));
   vec3 v = normalize(eye.xyz - point);
   float n_dot_l = dot(n, sun_direction.xyz);
   float side = n_dot_l < 0.0 ? -1.0 : 1.0;
@@ -128,11 +166,22 @@ void main() {
   color += through * (0.5 * sky_irradiance(-n) * seen + (side > 0.0 ? vec3(0.0) : sun));
   // Smooth threads, such as silk's, shine; rough ones have a rim of light.
   float gloss = side > 0.0 ? 1.0 : 0.0;
-  color += gloss * sun * sun_highlight(vec3(0.03), finish.y, n, v, facing, n_dot_v);
+  color += gloss * sun * highlight_of(sun_direction.xyz, vec3(0.03), made.y, n, v, facing, n_dot_v);
   float rim = 1.0 - n_dot_v;
   rim *= rim * rim;
   vec3 fibers = mix(vec3(1.0), albedo.rgb, 0.6);
   color += finish.z * rim * fibers * (0.7 * sky_irradiance(n) * seen + 0.5 * sun);
+  int sources = int(light_count.x);
+  for (int i = 0; i < sources; ++i) {
+    Source source = source_at(i, point);
+    float toward = dot(n, source.toward);
+    float front = toward < 0.0 ? 0.0 : 1.0;
+    float lit = abs(toward);
+    vec3 strength = source.color * lit * source_visibility(i, point, (2.0 * front - 1.0) * n, source, lit);
+    strength *= 0.5 + 0.5 * seen;
+    color += mix(through, albedo.rgb, front) * strength + 0.5 * finish.z * rim * fibers * strength;
+    color += front * strength * highlight_of(source.toward, vec3(0.03), made.y, n, v, lit, n_dot_v);
+  }
   result = vec4(shown(with_haze(color, distance(eye.xyz, point))), albedo.a);
 }
 )";
@@ -194,6 +243,17 @@ void main() {
   float seen = sky_visibility();
   vec3 color = albedo * (0.75 * sky_irradiance(n) * seen + sun * sine * wrapped);
   color += sun * wrapped * (0.16 * white + 0.9 * albedo * own);
+  int sources = int(light_count.x);
+  for (int i = 0; i < sources; ++i) {
+    Source source = source_at(i, point);
+    vec3 between = normalize(source.toward + v);
+    float across = dot(along, source.toward);
+    float lit = clamp(0.5 + 0.6 * dot(n, source.toward), 0.0, 1.0);
+    vec3 strength = source.color * lit * source_visibility(i, point, source.toward, source, 1.0);
+    float pale = highlight(along, between, -0.08 + 0.08 * lot, n, 90.0);
+    float colored = highlight(along, between, 0.12 + 0.12 * lot, n, 24.0);
+    color += strength * (albedo * sqrt(max(1.0 - across * across, 0.0)) + 0.16 * pale + 0.9 * albedo * colored);
+  }
   result = vec4(shown(with_haze(color, distance(eye.xyz, point))), 1.0);
 }
 )";
@@ -221,9 +281,10 @@ void main() {
 
 }  // namespace
 
-ShaderSource mesh_shader(MeshLook look, bool textured, bool fast) {
+ShaderSource mesh_shader(MeshLook look, MeshImages images, bool fast) {
   std::string fragment = shader_version(fast) + frame_part() + color_part() + sky_part() + shadow_part() +
-                         reflection_part() + kMeshFragmentInputs + albedo_part(textured);
+                         reflection_part() + kMeshFragmentInputs + albedo_part(images != MeshImages::kNone) +
+                         detail_part(images == MeshImages::kAll);
   switch (look) {
     case MeshLook::kSolid:
       fragment += kSolidFragment;

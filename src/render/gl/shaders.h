@@ -20,7 +20,10 @@ constexpr std::size_t kMeshLooks = 5;
 /// Whence depths are seen.
 enum class DepthFrom { kSun, kEye };
 
-ShaderSource mesh_shader(MeshLook look, bool textured, bool fast);  ///< Lit triangles, instanced.
+/// Which images a mesh has: none, of its color, or of color, normals and finish.
+enum class MeshImages { kNone, kColor, kAll };
+
+ShaderSource mesh_shader(MeshLook look, MeshImages images, bool fast);  ///< Lit triangles, instanced.
 /// Depth only, instanced; with holes where light goes through.
 ShaderSource depth_shader(DepthFrom from, bool holed);
 ShaderSource ground_shader(bool fast);  ///< The plane with its grid.

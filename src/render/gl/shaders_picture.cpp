@@ -59,6 +59,12 @@ void main() {
   float facing = clamp(sun_direction.y, 0.0, 1.0);
   vec3 sun = sun_color.rgb * facing * sun_visibility(point, n, sun_direction.y) * (0.6 + 0.4 * seen);
   vec3 color = albedo * (sky_irradiance(n) * seen + sun);
+  int sources = int(light_count.x);
+  for (int i = 0; i < sources; ++i) {
+    Source source = source_at(i, point);
+    float toward = clamp(source.toward.y, 0.0, 1.0);
+    color += albedo * source.color * toward * source_visibility(i, point, n, source, toward) * (0.6 + 0.4 * seen);
+  }
   // At grazing angles even a rough floor mirrors some sky.
   float away = 1.0 - clamp(-ray.y / length(ray), 0.0, 1.0);
   away *= away;
