@@ -75,7 +75,8 @@ TEST_SUITE("io/materials") {
       {"name": "laid", "points": [[0, 5, 3], [3, 5, 3], [3, 5, 7]], "material": "nylon_rope", "radius": 0.01},
       {"name": "own", "hook_point": [9, 9, 0], "total_mass": 2, "strength": 5, "material": "nylon_rope"}],
       "cloths": [{"name": "trousers", "corner": [0, 3, 0], "width": 2, "height": 1.5, "material": "denim"},
-                 {"name": "light", "corner": [5, 3, 0], "areal_density": 0.05, "material": "denim"}],
+                 {"name": "light", "corner": [5, 3, 0], "areal_density": 0.05, "material": "denim",
+                  "stretch_stiffness": 700, "bend": "spring"}],
       "solids": [{"name": "jelly", "size": [0.1, 0.1, 0.1], "position": [-3, 1, 0], "material": "gelatine"},
                  {"name": "firm", "size": [0.1, 0.1, 0.1], "position": [-4, 1, 0], "young_modulus": 90000,
                   "material": "gelatine"}])";
@@ -94,7 +95,16 @@ TEST_SUITE("io/materials") {
     CHECK(static_cast<double>(*ropes[2].desc.strength) == doctest::Approx(5));
     CHECK(static_cast<double>(simulation.world().mass(simulation.find("trousers")->cloth)) ==
           doctest::Approx(0.475 * 2 * 1.5));
+    // 500 gf/cm stretch it by 5.21 %, 1.96 gf/cm shear it by a degree, and 0.174 gf cm^2/cm bend it.
+    const hooke::ClothDesc& trousers = scene.objects.cloths[0].desc;
+    CHECK(static_cast<double>(trousers.stretch_stiffness) == doctest::Approx(490.3 / 0.0521).epsilon(0.01));
+    CHECK(static_cast<double>(trousers.shear_stiffness) ==
+          doctest::Approx(1.96 * 0.980665 * 57.3).epsilon(0.01));
+    CHECK(static_cast<double>(trousers.bend_stiffness) == doctest::Approx(0.174 * 9.80665e-5).epsilon(0.01));
     CHECK(static_cast<double>(scene.objects.cloths[1].desc.areal_density) == doctest::Approx(0.05));
+    // What it says itself holds, and bends by springs have another unit.
+    CHECK(static_cast<double>(scene.objects.cloths[1].desc.stretch_stiffness) == doctest::Approx(700));
+    CHECK(scene.objects.cloths[1].desc.bend_stiffness == hooke::ClothDesc{}.bend_stiffness);
     CHECK(static_cast<double>(simulation.world().mass(simulation.find("jelly")->solid)) ==
           doctest::Approx(1019 * 0.001));
     CHECK(static_cast<double>(scene.objects.solids[0].desc.young_modulus) == doctest::Approx(15200));

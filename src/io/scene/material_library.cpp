@@ -127,9 +127,7 @@ class Taking {
     }
     for_each_object(root_, "bodies", [&](JsonNode& body) { give_body(body); });
     for_each_object(root_, "ropes", [&](JsonNode& rope) { give_rope(rope); });
-    for_each_object(root_, "cloths", [&](JsonNode& cloth) {
-      if (cloth.find("total_mass") == nullptr) give(cloth, "areal_density", "areal_density");
-    });
+    for_each_object(root_, "cloths", [&](JsonNode& cloth) { give_cloth(cloth); });
     for_each_object(root_, "solids", [&](JsonNode& solid) { give_solid(solid); });
     add_pairs();
   }
@@ -209,6 +207,15 @@ class Taking {
     if (text_of(solid, "elasticity") == "shape_matching") return;
     give(solid, "young_modulus", "young_modulus");
     give(solid, "poisson_ratio", "poisson_ratio");
+  }
+
+  void give_cloth(JsonNode& cloth) const {
+    if (cloth.find("total_mass") == nullptr) give(cloth, "areal_density", "areal_density");
+    give(cloth, "stretch_stiffness", "stretch_stiffness");
+    give(cloth, "shear_stiffness", "shear_stiffness");
+    // Springs to the second neighbor have another unit.
+    const std::string bend = text_of(cloth, "bend");
+    if (bend != "spring" && bend != "none") give(cloth, "bend_stiffness", "bend_stiffness");
   }
 
   void give_rope(JsonNode& rope) const {
