@@ -97,10 +97,12 @@ TEST_SUITE("io/materials") {
           doctest::Approx(0.475 * 2 * 1.5));
     // 500 gf/cm stretch it by 5.21 %, 1.96 gf/cm shear it by a degree, and 0.174 gf cm^2/cm bend it.
     const hooke::ClothDesc& trousers = scene.objects.cloths[0].desc;
-    CHECK(static_cast<double>(trousers.stretch_stiffness) == doctest::Approx(490.3 / 0.0521).epsilon(0.01));
+    CHECK(static_cast<double>(trousers.stretch_stiffness) ==
+          doctest::Approx(490.3 / 0.0521).epsilon(0.01).scale(0));
     CHECK(static_cast<double>(trousers.shear_stiffness) ==
-          doctest::Approx(1.96 * 0.980665 * 57.3).epsilon(0.01));
-    CHECK(static_cast<double>(trousers.bend_stiffness) == doctest::Approx(0.174 * 9.80665e-5).epsilon(0.01));
+          doctest::Approx(1.96 * 0.980665 * 57.3).epsilon(0.01).scale(0));
+    CHECK(static_cast<double>(trousers.bend_stiffness) ==
+          doctest::Approx(0.174 * 9.80665e-5).epsilon(0.01).scale(0));
     CHECK(static_cast<double>(scene.objects.cloths[1].desc.areal_density) == doctest::Approx(0.05));
     // What it says itself holds, and bends by springs have another unit.
     CHECK(static_cast<double>(scene.objects.cloths[1].desc.stretch_stiffness) == doctest::Approx(700));
