@@ -6,7 +6,9 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -178,5 +180,27 @@ TEST_SUITE("io/scene_meshes") {
     REQUIRE(loaded.notes.size() == 1);
     CHECK(loaded.notes[0].where.find("solids[0]") != std::string::npos);
     CHECK(loaded.notes[0].message.find("cells were added along thin parts") != std::string::npos);
+  }
+
+  TEST_CASE("an image that a model names and that is not there is a warning, and the scene goes on") {
+    const auto importer = hooke::io_test::built_importer();
+    const hooke::io_test::TemporaryFolder folder;
+    (void)folder.file("tip.mtl", "newmtl a\nKd 1 0 0\nmap_Kd gone.png\nnorm gone_too.png\n");
+    (void)folder.file("tip.obj", "mtllib tip.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    auto scene = hooke::parse_scene(
+        R"({"version": 1, "meshes": {"tip": {"file": "tip.obj"}}, "bodies": [{"shape": {"mesh": "tip"}}]})",
+        (folder.path() / "demo.json").string());
+    REQUIRE(scene);
+    const auto loaded = hooke::Simulation::create(std::move(*scene.value));
+    REQUIRE(loaded);
+    std::vector<std::string> lines;
+    for (const hooke::Error& warning : loaded.warnings) {
+      CHECK(warning.where.ends_with("meshes.tip.file"));
+      lines.push_back(warning.message);
+    }
+    std::sort(lines.begin(), lines.end());
+    CHECK(lines == std::vector<std::string>{
+                       "its image 'gone.png' is not beside it, and is left out: put it there",
+                       "its image 'gone_too.png' is not beside it, and is left out: put it there"});
   }
 }
