@@ -6,6 +6,7 @@
 #include "hooke/result.h"
 #include "hooke/world.h"
 
+#include <complex>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,8 +28,9 @@
 /// What a World holds becomes forces: springs, segments of ropes, bends, gravity, fields, drag, wind, force
 /// laws. Points that are held follow their motion exactly. These things differ from a World:
 ///
-/// - Soft solids are refused; so are rigid springs and ropes, because they have no force law. Limits and
-///   tethers, which have none either, are left out, and ObjectReport::left_out says so.
+/// - Rigid springs and ropes have no force law: they are refused, or become stiff springs
+///   (Options::rigid_stretch). Soft solids are refused, or stand still (Options::solids_stand). Limits and
+///   tethers are left out. ObjectReport::left_out says what was replaced or left out.
 /// - A point that a step leaves inside a static body is put back on its surface. It loses its speed into the
 ///   body and what friction takes of its sliding. That makes any method first order there.
 /// - Bodies collide by rollback, see CollisionOptions.
@@ -62,6 +64,15 @@ struct StepperInfo {
 /// omega dt >= 0 and damping ratio zeta >= 0. The oscillation grows if it is more than 1. It is 0 for
 /// adaptive methods. Errors: an unknown name, arguments out of range.
 [[nodiscard]] Result<double> growth_per_step(std::string_view stepper, double omega_dt, double zeta);
+
+/// The same for any z = lambda dt of y' = lambda y, lambda being one of a pair of conjugate eigenvalues, or a
+/// double real one. The method is stable where this is at most 1. Errors: an unknown name, z not finite.
+[[nodiscard]] Result<double> growth_at(std::string_view stepper, std::complex<double> z);
+
+/// The same factor, measured: the method itself makes steps of an oscillator of one mass on one spring, from
+/// as many states as its memory is large, and the result is the largest eigenvalue of that linear map.
+/// Errors: an unknown name, an adaptive method, omega_dt not in [1e-6, 1000], zeta not in [0, 100].
+[[nodiscard]] Result<double> measured_growth(std::string_view stepper, double omega_dt, double zeta);
 
 /// How far the result may be from the exact one, in place of how to compute it.
 struct Accuracy {
@@ -158,7 +169,12 @@ struct Options {
   /// the spring: where its oscillation grows, or, for methods without any stable step without damping, grows
   /// by more than 10 % per period.
   bool force = false;
-  bool contacts = true;              ///< Whether points touch static bodies, and bodies each other.
+  bool contacts = true;  ///< Whether points touch static bodies, and bodies each other.
+  /// What a rigid spring or segment becomes. 0: an Error. Otherwise a spring without damping, so stiff that
+  /// the weight of the whole object at 9.81 m/s^2 stretches it by this share of its length. [0, 0.1]
+  double rigid_stretch = 0;
+  /// Whether soft solids, which have no forces here, stand still where they are instead of being an Error.
+  bool solids_stand = false;
   CollisionOptions collisions = {};  ///< How bodies collide.
 };
 
@@ -171,7 +187,20 @@ struct ObjectReport {
   std::uint64_t steps = 0;            ///< Steps of the method; of adaptive ones those that they chose.
   std::uint64_t evaluations = 0;      ///< Evaluations of the forces on the whole object.
   std::optional<double> error = {};   ///< Estimated error if Options::accuracy was given [m].
-  std::vector<std::string> left_out;  ///< What of the object has no force here, in words.
+  std::vector<std::string> left_out;  ///< What of the object has no force here, or another, in words.
+};
+
+/// How an object moves for small displacements from where it is: the eigenvalues of y' = f(t, y).
+struct Spectrum {
+  PointRef::Kind kind = PointRef::Kind::kNone;  ///< Kind of the object.
+  std::uint32_t slot = 0;                       ///< Slot of its id.
+  /// Eigenvalues lambda [1/s], the largest first. An oscillation that is damped by zeta has the pair
+  /// omega (-zeta +- i sqrt(1 - zeta^2)).
+  std::vector<std::complex<double>> eigenvalues = {};
+  /// Whether the object has more than 100 free points. Then these are upper bounds, one pair for each free
+  /// point, after Gershgorin: no oscillation is faster than the fastest of them.
+  bool bounded = false;
+  std::string stiffest = {};  ///< What makes it fast, such as "spring 3 of particles 1 (k = 1e+05 N/m)".
 };
 
 /// The state of a body in the laboratory.
@@ -188,9 +217,9 @@ struct BodyState {
 class Run {
  public:
   /// Makes a run from a World. Errors: an unknown stepper, a step or tolerance out of range, a rigid spring
-  /// or rope, a soft solid, an explicit method beyond its stability limit (see Options::force), a Taylor
-  /// method where a force has no known derivative (force laws, gusts), an accuracy that cannot be reached,
-  /// SUNDIALS missing.
+  /// or rope or a soft solid (see Options::rigid_stretch and Options::solids_stand), an explicit method
+  /// beyond its stability limit (see Options::force), a Taylor method where a force has no known derivative
+  /// (force laws, gusts), an accuracy that cannot be reached, SUNDIALS missing.
   [[nodiscard]] static Result<Run> create(const World& world, const Options& options = {});
   /// Destroys the run.
   ~Run();
@@ -240,6 +269,9 @@ class Run {
   [[nodiscard]] std::uint64_t evaluations() const;
   /// Reports on each object in the order of creation, then on each body that moves.
   [[nodiscard]] std::vector<ObjectReport> report() const;
+  /// Eigenvalues of each object as it is now, without bodies, in the order of creation. Force laws count as
+  /// constant.
+  [[nodiscard]] std::vector<Spectrum> spectra() const;
   /// Report on collisions so far; it lives as long as the run, and advance() updates it.
   [[nodiscard]] const CollisionReport& collisions() const;
 

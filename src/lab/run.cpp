@@ -56,6 +56,7 @@ Result<void> check_numbers(const Options& options) {
     return good.error();
   if (const auto good = in_range("collisions.iteration_limit", collisions.iteration_limit, 1, 1000); !good)
     return good.error();
+  if (const auto good = in_range("rigid_stretch", options.rigid_stretch, 0, 0.1); !good) return good.error();
   if (const auto good = in_range("tolerance", options.tolerance, 1e-14, 0.1); !good) return good.error();
   if (!options.accuracy) return {};
   if (const auto good = in_range("accuracy.max_error", options.accuracy->max_error, 1e-12, 1e6); !good)
@@ -134,7 +135,8 @@ Result<Run> Run::create(const World& world, const Options& options) {
   data->cloth_slots = tables.cloth_slots;
   for (std::uint32_t object = 0; object < tables.objects.size(); ++object) {
     Bodies near = options.contacts ? bodies_near(tables, tables.objects[object]) : Bodies{};
-    Result<Part> part = make_part(System::create(tables, object), std::move(near), tables.time, options);
+    auto system = System::create(tables, object, {options.rigid_stretch, options.solids_stand});
+    Result<Part> part = make_part(std::move(system), std::move(near), tables.time, options);
     if (!part) return part.error();
     data->parts.push_back(std::move(part).value());
   }
@@ -281,6 +283,13 @@ std::uint64_t Run::evaluations() const {
   std::uint64_t sum = 0;
   data_->for_each_part([&](const Part& part) { sum += part.system.evaluations(); });
   return sum;
+}
+
+std::vector<Spectrum> Run::spectra() const {
+  const base::FloatEnvironment environment;
+  std::vector<Spectrum> list;
+  for (const Part& part : data_->parts) list.push_back(part.system.spectrum(part.time(), part.y));
+  return list;
 }
 
 const CollisionReport& Run::collisions() const {

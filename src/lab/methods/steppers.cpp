@@ -106,4 +106,14 @@ Result<double> growth_per_step(std::string_view stepper, double omega_dt, double
   return method->growth({omega_dt * omega_dt, 2 * zeta * omega_dt});
 }
 
+Result<double> growth_at(std::string_view stepper, std::complex<double> z) {
+  const base::FloatEnvironment environment;
+  const Method* method = find_method(stepper);
+  if (method == nullptr) return unknown_method(stepper);
+  if (!(std::isfinite(z.real()) && std::isfinite(z.imag())))
+    return Error{ErrorCode::kOutOfRange, "z", "must be finite"};
+  if (method->growth == nullptr) return 0.0;
+  return method->growth({std::norm(z), -2 * z.real()});
+}
+
 }  // namespace hooke::lab

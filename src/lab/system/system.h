@@ -52,13 +52,21 @@ struct Oscillation {
   std::size_t row = 0;       ///< See System::row_name.
 };
 
+/// Says what a system does with what has no force law; see lab::Options.
+struct Replacement {
+  double rigid_stretch = 0;
+  bool solids_stand = false;
+};
+
 class Laws;
 class BodyLaws;
 
 class System {
  public:
-  /// Makes the system of object `object` of the tables. The Error tells of a rigid spring or segment.
-  static Result<System> create(const state::Tables& tables, std::uint32_t object);
+  /// Makes the system of object `object` of the tables. The Error tells of a solid, or of a rigid spring or
+  /// segment, that `replacement` does not allow.
+  static Result<System> create(const state::Tables& tables, std::uint32_t object,
+                               const Replacement& replacement = {});
   /// Makes the system of a rigid body that moves freely, or as told (kinematic). `laws` may be null.
   static System create_body(const state::Tables& tables, std::uint32_t row, std::shared_ptr<BodyLaws> laws);
 
@@ -86,6 +94,8 @@ class System {
   [[nodiscard]] Energy energy(double t, const State& y) const;
   /// Returns one oscillation per free point on which any row acts.
   [[nodiscard]] std::vector<Oscillation> oscillations(double t, const State& y) const;
+  /// Returns the eigenvalues of df/dy; see lab::Spectrum.
+  [[nodiscard]] Spectrum spectrum(double t, const State& y) const;
   /// Returns a name such as "spring 3 of particles 1 (k = 1e+05 N/m)".
   [[nodiscard]] std::string row_name(std::size_t row) const;
 
@@ -149,8 +159,16 @@ class System {
   /// Notes which loads of a body are left out.
   void note_loads(const state::Tables& tables, std::uint32_t row);
   void add_points(const state::Tables& tables, const state::Deformable& object);
-  Result<void> add_springs(const state::Tables& tables, const state::Deformable& object);
-  Result<void> add_segments(const state::Tables& tables, const state::Deformable& object);
+  Result<void> add_springs(const state::Tables& tables, const state::Deformable& object,
+                           double rigid_stretch);
+  Result<void> add_segments(const state::Tables& tables, const state::Deformable& object,
+                            double rigid_stretch);
+  /// Returns the stiffness that stands for a rigid one of this length [N/m].
+  [[nodiscard]] double stiffness_of_rigid(double rest_length, double rigid_stretch) const;
+  /// Notes how many rigid rows became springs, the stiffest of them of `stiffness`.
+  void note_rigid(const char* rows, int count, double stiffness, double rigid_stretch);
+  /// Makes all points of a solid stand, and notes that.
+  void let_stand(const state::Tables& tables, const state::Deformable& object);
   void add_bends(const state::Tables& tables, const state::Deformable& object);
   void add_air(const state::Tables& tables, const state::Deformable& object);
   void note(const state::Tables& tables, const state::Deformable& object);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace hooke::lab {
@@ -26,15 +27,20 @@ Error rigid(const state::Deformable& object, const char* row, std::size_t index)
               " is rigid; the laboratory needs a finite stiffness, for a rigid spring has no force law"};
 }
 
+constexpr double kWeight = 9.81;    ///< Of one kilogram [N].
+constexpr double kShortest = 1e-3;  ///< Of a rigid spring, as its stiffness counts [m].
+
 }  // namespace
 
 std::string System::name() const {
   return std::string(noun(kind_)) + " " + std::to_string(slot_);
 }
 
-Result<System> System::create(const state::Tables& tables, std::uint32_t object_row) {
+Result<System> System::create(const state::Tables& tables, std::uint32_t object_row,
+                              const Replacement& replacement) {
   const state::Deformable& object = tables.objects[object_row];
-  if (object.kind == PointRef::Kind::kSolid) {
+  const bool is_solid = object.kind == PointRef::Kind::kSolid;
+  if (is_solid && !replacement.solids_stand) {
     return Error{ErrorCode::kUnsupported, std::string(noun(object.kind)) + " " + std::to_string(object.slot),
                  "is a solid; the laboratory has none"};
   }
@@ -44,9 +50,14 @@ Result<System> System::create(const state::Tables& tables, std::uint32_t object_
   system.wind_ = tables.desc.wind;
   system.wind_step_ = tables.step_count;
   system.feels_air_ = object.feels_air();
+  if (is_solid) {
+    system.let_stand(tables, object);
+    return system;
+  }
   system.add_points(tables, object);
-  if (const Result<void> added = system.add_springs(tables, object); !added) return added.error();
-  if (const Result<void> added = system.add_segments(tables, object); !added) return added.error();
+  const double stretch = replacement.rigid_stretch;
+  if (const auto added = system.add_springs(tables, object, stretch); !added) return added.error();
+  if (const auto added = system.add_segments(tables, object, stretch); !added) return added.error();
   system.add_bends(tables, object);
   system.add_air(tables, object);
   const auto asks = [](const state::ForceLawEntry& entry) { return entry.law != nullptr; };
@@ -116,41 +127,92 @@ void System::add_points(const state::Tables& tables, const state::Deformable& ob
   }
 }
 
-Result<void> System::add_springs(const state::Tables& tables, const state::Deformable& object) {
+void System::let_stand(const state::Tables& tables, const state::Deformable& object) {
+  const state::Particles& p = tables.particles;
+  for (std::uint32_t row = 0; row < object.particles.count; ++row) {
+    const std::size_t i = object.particles.first + row;
+    start_x_.push_back(object.origin + vector_cast<double>(p.position[i].x));
+    start_v_.emplace_back();
+    mass_.push_back(number(p.mass[i]));
+    radius_.push_back(number(p.position[i].radius));
+    free_of_row_.push_back(kHeld);
+  }
+  const auto first = p.row_of.begin() + object.particles.first;
+  row_of_point_.assign(first, first + object.particles.count);
+  pins_.resize(object.particles.count);
+  note_fields(tables);
+  left_out_.emplace_back("the whole solid, which stands still: the laboratory has no forces of solids");
+}
+
+double System::stiffness_of_rigid(double rest_length, double rigid_stretch) const {
+  double mass = 0;
+  for (const std::uint32_t row : free_rows_) mass += mass_[row];
+  return mass * kWeight / (rigid_stretch * std::max(rest_length, kShortest));
+}
+
+void System::note_rigid(const char* rows, int count, double stiffness, double rigid_stretch) {
+  if (count == 0) return;
+  char text[160];
+  std::snprintf(text, sizeof(text),
+                "%d rigid %s: springs stand for them, of up to %.3g N/m, which the object's weight stretches "
+                "by %.3g %%",
+                count, rows, stiffness, 100 * rigid_stretch);
+  left_out_.emplace_back(text);
+}
+
+Result<void> System::add_springs(const state::Tables& tables, const state::Deformable& object,
+                                 double rigid_stretch) {
   const state::Springs& s = tables.springs;
   bool limits = false;
+  int rigid_rows = 0;
+  double stiffest = 0;
   for (std::uint32_t i = 0; i < object.springs.count; ++i) {
     const std::size_t row = object.springs.first + i;
     const bool holds =
         s.kind[row] == state::SpringClass::kTether || s.kind[row] == state::SpringClass::kLimit;
     limits = limits || holds;
     if (holds) continue;
-    if (std::isinf(s.stiffness[row])) return rigid(object, "spring", i);
+    double stiffness = number(s.stiffness[row]);
+    if (std::isinf(stiffness)) {
+      if (!(rigid_stretch > 0)) return rigid(object, "spring", i);
+      stiffness = stiffness_of_rigid(number(s.rest_length[row]), rigid_stretch);
+      stiffest = std::max(stiffest, stiffness);
+      ++rigid_rows;
+    }
     const bool isotropic = s.form[row] == state::SpringForm::kExplicitIsotropic ||
                            s.form[row] == state::SpringForm::kPredictedIsotropic;
     springs_.push_back(
         {.at = {s.particle_a[row] - object.particles.first, s.particle_b[row] - object.particles.first},
-         .spring = {number(s.stiffness[row]), number(s.damping[row]), number(s.rest_length[row]),
-                    isotropic}});
+         .spring = {stiffness, number(s.damping[row]), number(s.rest_length[row]), isotropic}});
     spring_names_.push_back("spring " + std::to_string(i));
   }
+  note_rigid("springs", rigid_rows, stiffest, rigid_stretch);
   if (limits) left_out_.emplace_back("limits of extension and tethers: they have no force law");
   return {};
 }
 
-Result<void> System::add_segments(const state::Tables& tables, const state::Deformable& object) {
+Result<void> System::add_segments(const state::Tables& tables, const state::Deformable& object,
+                                  double rigid_stretch) {
   const state::Segments& s = tables.segments;
   bool limits = false;
+  int rigid_rows = 0;
+  double stiffest = 0;
   for (std::uint32_t i = 0; i < object.segments.count; ++i) {
     const std::size_t row = object.segments.first + i;
     if (!s.joins(row)) continue;
-    if (std::isinf(s.stiffness[row])) return rigid(object, "segment", i);
+    double stiffness = number(s.stiffness[row]);
+    if (std::isinf(stiffness)) {
+      if (!(rigid_stretch > 0)) return rigid(object, "segment", i);
+      stiffness = stiffness_of_rigid(number(s.rest_length[row]), rigid_stretch);
+      stiffest = std::max(stiffest, stiffness);
+      ++rigid_rows;
+    }
     limits = limits || !std::isinf(s.length_limit[row]);
     springs_.push_back(
-        {.at = {i, i + 1},
-         .spring = {number(s.stiffness[row]), number(s.damping[row]), number(s.rest_length[row]), false}});
+        {.at = {i, i + 1}, .spring = {stiffness, number(s.damping[row]), number(s.rest_length[row]), false}});
     spring_names_.push_back("segment " + std::to_string(i));
   }
+  note_rigid("segments", rigid_rows, stiffest, rigid_stretch);
   if (limits) left_out_.emplace_back("limits of extension: they have no force law");
   return {};
 }
@@ -203,6 +265,15 @@ void System::note(const state::Tables& tables, const state::Deformable& object) 
   velocity_dependent_ = damped;
   ballistic_ = !damped && springs_.empty() && bends_.empty() && curvatures_.empty() && attractors_->empty();
   note_fields(tables);
+  const auto holds_point = [&](const state::HookPlace& place) {
+    // The index is unsigned, so that this also excludes particles before the object.
+    return place.is_point() && place.particle[0] - object.particles.first < object.particles.count;
+  };
+  const auto held = std::count_if(tables.hooks.begin(), tables.hooks.end(), [&](const state::Hook& hook) {
+    return !hook.broken && (holds_point(hook.a) || holds_point(hook.b));
+  });
+  if (held > 0)
+    left_out_.emplace_back(std::to_string(held) + " hooks at its points: objects do not act on one another");
   if (object.yield_angle < kRigid) left_out_.emplace_back("folds that stay: bends are elastic here");
   if (tables.any_force) left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
 }
