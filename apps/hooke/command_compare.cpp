@@ -24,7 +24,6 @@ struct CompareOptions {
   std::optional<double> dt;
   std::string point;
   std::string output;
-  bool force = false;
   bool no_limits = false;
 };
 
@@ -36,13 +35,14 @@ std::string footer() {
     text += info.available ? "\n" : " (not built in)\n";
   }
   return text +
-         "A stepper that would diverge is skipped, and that is said.\n"
+         "A stepper that diverges is drawn up to where it leaves, with when and why.\n"
+         "Rigid ropes and springs become springs that their weight stretches by 0.1 %; solids stand still.\n"
          "A scene that declares an accuracy is also run by what that chooses, as 'declared'.\n\n"
          "Writes into DIR: index.html, summary.csv, order.csv, series_*.csv and each plot as .png and .svg.\n"
          "Exit code 3 if gnuplot is missing: tables and page are then written without pictures.\n\n"
          "Examples:\n"
          "  hooke compare scenes/paper/fig3.json --out fig3\n"
-         "  hooke compare scenes/paper/fig2.json --steppers euler,paper,verlet,rk4,solver --force --out fig2";
+         "  hooke compare scenes/paper/fig2.json --steppers euler,paper,verlet,rk4,solver --out fig2";
 }
 
 void describe(CLI::App& app, CompareOptions& options) {
@@ -54,7 +54,6 @@ void describe(CLI::App& app, CompareOptions& options) {
   add_seconds(app, options.seconds, "Simulated time; the scene's by default");
   add_number(app, "--dt", options.dt, 1e-7, 1, "Step [s]; the scene's by default");
   app.add_option("--point", options.point, "Watched point, as rope:15 or rope:last; the first object's last");
-  app.add_flag("--force", options.force, "Run explicit methods where they are known to diverge, too");
   app.add_flag("--no-limits", options.no_limits, "Do not measure orders and stability limits");
   app.add_option("--out", options.output, "Folder for the results; made if it is missing")->required();
   app.footer(footer());
@@ -76,20 +75,18 @@ bool only_solver(const CompareOptions& options) {
   return options.steppers.size() == 1 && options.steppers.front() == kSolverName;
 }
 
-/// Leaves out, before the long work, the steppers by which the laboratory does not run this scene, and
-/// reports them. One stepper that would diverge must not stop the others. The Error tells that none is left.
-/// The laboratory does not know the names of scenes.
+/// Leaves out, before the long work, the steppers by which the laboratory cannot run this scene at all, and
+/// reports them. Those that diverge run. The Error tells that none is left. The laboratory does not know the
+/// names of scenes.
 Result<std::vector<Skipped>> skip_refused(const Stage& stage, CompareOptions& options) {
   std::vector<Skipped> skipped;
   std::optional<Error> first;
   for (const std::string& name : options.steppers) {
     const auto available = check_stepper(name);
     const auto made =
-        available ? make_player(stage, name, stage.dt(), options.force) : Result<Player>(available.error());
+        available ? make_player(stage, name, stage.dt(), true) : Result<Player>(available.error());
     if (made) continue;
-    const bool forced = available && !options.force && make_player(stage, name, stage.dt(), true);
-    Error error = refusal(options.scene, made.error());
-    if (forced) error.message += "; --force runs it all the same";
+    const Error error = refusal(options.scene, made.error());
     skipped.push_back({name, error.message});
     if (!first) first = error;
   }
@@ -106,16 +103,21 @@ Result<std::vector<Skipped>> skip_refused(const Stage& stage, CompareOptions& op
 
 Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
   const Scene& scene = stage.scene();
-  const Schedule schedule = make_schedule(scene.seconds, stage.dt());
+  const Outline outline = make_outline(stage);
+  const std::size_t runs = options.steppers.size() + 2;
+  const Schedule schedule = make_schedule(scene.seconds, stage.dt(), most_frames(outline, runs));
   Comparison comparison = {.scene = options.scene,
                            .title = scene.title,
                            .description = scene.description,
                            .point = stage.point_name,
                            .seconds = static_cast<double>(schedule.steps) * schedule.dt,
                            .dt = schedule.dt,
-                           .reference = no_reference(stage),
+                           .reference = no_reference(stage, ""),
                            .rigid = rigid_pendulum(stage),
-                           .trials = {}};
+                           .trials = {},
+                           .schedule = schedule,
+                           .stability = study_stability(stage, options.steppers),
+                           .outline = outline};
   std::vector<std::string> names = options.steppers;
   if (scene.accuracy) {
     comparison.max_error = scene.accuracy->max_error;
@@ -124,11 +126,11 @@ Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
   auto reference = make_reference(stage, schedule);
   if (reference) {
     comparison.reference = std::move(reference).value();
-  } else if (!only_solver(options)) {
-    return reference.error();
+  } else {
+    comparison.reference = no_reference(stage, refusal("", reference.error()).message);
   }
   for (const std::string& name : names) {
-    auto trial = run_trial(stage, name, options.force, schedule, comparison.reference);
+    auto trial = run_trial(stage, name, true, schedule, comparison.reference);
     if (!trial) return trial.error();
     comparison.trials.push_back(std::move(trial).value());
   }
@@ -190,9 +192,15 @@ ExitCode write(const Comparison& comparison, const std::string& folder) {
   std::fputs(text_of_table(summary_table(comparison)).c_str(), stdout);
   const std::string& title = comparison.reference.title;
   std::printf("errors are distances from %s\n",
-              title.empty() ? "nothing: the laboratory refuses the scene" : title.c_str());
+              title.empty() ? ("nothing: " + comparison.reference.missing).c_str() : title.c_str());
   for (const Trial& trial : comparison.trials) {
     std::printf("%s %s\n", trial.name.c_str(), verdict_of(trial, comparison).c_str());
+  }
+  if (!comparison.stability.methods.empty()) {
+    std::printf("%s\n", text_of_motion(comparison.stability.system, comparison.dt).c_str());
+  }
+  for (const std::string& what : comparison.stability.system.left_out) {
+    std::printf("left out or replaced in the laboratory: %s\n", what.c_str());
   }
   for (const Skipped& one : comparison.skipped) {
     std::printf("%s was skipped: %s\n", one.name.c_str(), one.reason.c_str());

@@ -66,8 +66,7 @@ std::vector<PlotCurve> curves_of(const Comparison& comparison, bool with_referen
   std::vector<PlotCurve> curves;
   for (std::size_t i = 0; i < comparison.trials.size(); ++i) {
     const Trial& trial = comparison.trials[i];
-    curves.push_back(
-        {.title = trial.name, .color = kColors[i % kColors.size()], .points = thin(trial.samples, point)});
+    curves.push_back({.title = trial.name, .color = color_of_run(i), .points = thin(trial.samples, point)});
   }
   if (!with_reference || comparison.reference.samples.empty()) return curves;
   curves.push_back({.title = "reference",
@@ -163,7 +162,7 @@ std::vector<PlotCurve> order_curves(const Comparison& comparison, const X& x) {
     const lab::OrderMeasurement& order = *trial.limits.order;
     const std::optional<double> measured = order_of(trial, comparison);
     PlotCurve curve = {.title = trial.name + (measured ? text_of(", order %.2f", *measured) : ""),
-                       .color = kColors[i % kColors.size()],
+                       .color = color_of_run(i),
                        .marked = true};
     for (std::size_t k = 0; k < order.dt.size(); ++k) {
       // A run that has diverged would leave no room for the others.
@@ -260,6 +259,10 @@ bool has_points(const Plot& plot) {
 }
 
 }  // namespace
+
+const char* color_of_run(std::size_t number) {
+  return kColors[number % kColors.size()];
+}
 
 std::vector<Plot> plots_of(const Comparison& comparison) {
   std::vector<Plot> plots;

@@ -39,6 +39,9 @@ struct Plot {
   std::vector<PlotCurve> curves;
 };
 
+/// Returns the color of the run of this number, as "#D55E00".
+const char* color_of_run(std::size_t number);
+
 enum class PlotFormat { kPng, kSvg };
 
 /// Makes plots of trajectory, position, error, energy, order and cost, as far as there are data.

@@ -42,13 +42,14 @@ std::vector<DVec3> points_of(const World& world, const SceneObject& object) {
 
 const SceneObject* find_object(const Simulation& simulation, const std::string& name) {
   if (!name.empty()) return simulation.find(name);
-  const SceneObject* body = nullptr;  // Used where no object has points.
+  const SceneObject* second = nullptr;  // A body or a solid, used where nothing else has points.
   for (const SceneObject& object : simulation.objects()) {
     if (points_of(simulation.world(), object).empty()) continue;
-    if (object.kind != SceneObject::Kind::kBody) return &object;
-    if (body == nullptr) body = &object;
+    const bool first = object.kind != SceneObject::Kind::kBody && object.kind != SceneObject::Kind::kSolid;
+    if (first) return &object;
+    if (second == nullptr) second = &object;
   }
-  return body;
+  return second;
 }
 
 Result<Player> make_solver_player(const Stage& stage, double dt) {
@@ -66,6 +67,7 @@ Result<Player> make_solver_player(const Stage& stage, double dt) {
       },
       .position = [simulation, object,
                    point = stage.point] { return points_of(simulation->world(), object)[point]; },
+      .points = [simulation, object] { return points_of(simulation->world(), object); },
       .energy = [simulation] { return simulation->world().measure().energy; },
       .evaluations =
           [simulation, evaluations_per_step] {
@@ -136,26 +138,35 @@ Result<void> check_stepper(const std::string& name) {
 
 Result<Player> make_player(const Stage& stage, const std::string& name, double dt, bool force) {
   if (name == kSolverName) return make_solver_player(stage, dt);
-  lab::Options options = {.dt = dt, .force = force};
+  auto created = make_stage_run(stage, name, dt, force);
+  if (!created) return created.error();
+  const auto run = std::make_shared<lab::Run>(std::move(created).value());
+  // Solids stand still in the laboratory, and have no points there.
+  const auto points = [run, object = stage.object, still = stage.points] {
+    std::vector<DVec3> list = positions_of(*run, object);
+    return list.empty() ? still : list;
+  };
+  Player player = {
+      .advance = [run] { return run->advance(); },
+      .position = [points, point = stage.point] { return points()[point]; },
+      .points = points,
+      .energy = [run] { return run->energy(); },
+      .evaluations = [run] { return static_cast<double>(run->evaluations()); },
+      .collisions = [run] { return run->collisions(); },
+  };
+  if (name == kDeclaredName) player.note = chosen_text(*run, stage);
+  return player;
+}
+
+Result<lab::Run> make_stage_run(const Stage& stage, const std::string& name, double dt, bool force) {
+  lab::Options options = {.dt = dt, .force = force, .rigid_stretch = kRigidStretch, .solids_stand = true};
   if (stage.scene().laboratory) options.collisions = stage.scene().laboratory->collisions;
   if (name == kDeclaredName && stage.scene().accuracy) {
     options.accuracy = {.max_error = stage.scene().accuracy->max_error, .seconds = stage.scene().seconds};
   } else {
     options.stepper = name;
   }
-  auto created = lab::Run::create(stage.start.world(), options);
-  if (!created) return created.error();
-  const auto run = std::make_shared<lab::Run>(std::move(created).value());
-  const SceneObject object = stage.object;
-  Player player = {
-      .advance = [run] { return run->advance(); },
-      .position = [run, object, point = stage.point] { return positions_of(*run, object)[point]; },
-      .energy = [run] { return run->energy(); },
-      .evaluations = [run] { return static_cast<double>(run->evaluations()); },
-      .collisions = [run] { return run->collisions(); },
-  };
-  if (options.accuracy) player.note = chosen_text(*run, stage);
-  return player;
+  return lab::Run::create(stage.start.world(), options);
 }
 
 Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepper, double seconds,
@@ -264,6 +275,8 @@ PointRef reference_of(const SceneObject& object) {
       return point(object.cloth, 0);
     case SceneObject::Kind::kParticles:
       return point(object.particles, 0);
+    case SceneObject::Kind::kSolid:
+      return point(object.solid, 0);
     default:
       return {};
   }

@@ -37,8 +37,9 @@ Result<Stage> make_stage(Scene scene, const std::string& point);
 
 /// A Player is one run by one stepper. All functions belong to the same run.
 struct Player {
-  std::function<Result<void>()> advance;  ///< Advances by Stage::dt.
-  std::function<DVec3()> position;        ///< Position of the watched point [m].
+  std::function<Result<void>()> advance;       ///< Advances by Stage::dt.
+  std::function<DVec3()> position;             ///< Position of the watched point [m].
+  std::function<std::vector<DVec3>()> points;  ///< Positions of all points of the watched object [m].
   std::function<Energy()> energy;
   std::function<double()> evaluations;               ///< Evaluations of the forces so far.
   std::function<lab::CollisionReport()> collisions;  ///< Report so far; empty for the solver.
@@ -51,6 +52,13 @@ Result<void> check_stepper(const std::string& name);
 
 /// Turns an error of the laboratory about a scene into bad input, with the scene as `where`.
 Error refusal(const std::string& scene, const Error& reason);
+
+/// Share of its length by which the weight of an object stretches what stands for its rigid springs.
+inline constexpr double kRigidStretch = 1e-3;
+
+/// Makes a run of the stage by a method of the laboratory, or by kDeclaredName. Rigid springs and ropes
+/// become springs (kRigidStretch), solids stand still. Errors are those of lab::Run::create.
+Result<lab::Run> make_stage_run(const Stage& stage, const std::string& name, double dt, bool force);
 
 /// Makes a player of the solver, of a method of the laboratory, or of kDeclaredName. `dt` [s] is the length
 /// of one advance. Errors are those of lab::Run::create.

@@ -159,10 +159,26 @@ std::optional<double> order_of(const Trial& trial, const Comparison& comparison)
   return std::nullopt;
 }
 
+/// Returns why a run diverged, as far as the growth of small motions explains it.
+static std::string reason_of(const Trial& trial, const Comparison& comparison) {
+  const MethodGrowth* method = comparison.stability.find(trial.name);
+  if (method == nullptr || !method->worst) return "";
+  const double size = std::abs(*method->worst);
+  if (!(method->worst_growth > 1 + 1e-9)) {
+    return ": small motions do not grow by this method, so that large ones or contacts must be the cause";
+  }
+  const std::string& stiffest = comparison.stability.system.stiffest;
+  const bool is_fastest = size > 0.999 * comparison.dt * comparison.stability.system.omega;
+  std::string text = text_of(": an oscillation of omega = %.4g/s", size / comparison.dt);
+  if (is_fastest && !stiffest.empty()) text += " (" + stiffest + ")";
+  return text + text_of(", h omega = %.4g, ", size) + method->consequence;
+}
+
 std::string verdict_of(const Trial& trial, const Comparison& comparison) {
   if (trial.diverged_at) {
-    const std::string reason = trial.note.empty() ? "" : ": " + trial.note;
-    return text_of("diverges; at %.3g s it is gone", *trial.diverged_at) + reason;
+    const std::string note = trial.note.empty() ? "" : " (" + trial.note + ")";
+    return text_of("diverges; at %.3g s it is gone", *trial.diverged_at) + note +
+           reason_of(trial, comparison);
   }
   if (comparison.reference.samples.empty()) return "stays finite";
   std::string text = text_of("is at most %.2g m off", trial.largest_error);

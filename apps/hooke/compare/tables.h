@@ -1,5 +1,7 @@
 #pragma once
 
+#include "hooke/compare/outline.h"
+#include "hooke/compare/stability.h"
 #include "hooke/compare/trial.h"
 
 #include <string>
@@ -26,6 +28,9 @@ struct Comparison {
   std::optional<ExactMotion> rigid;  ///< Drawn for comparison; see rigid_pendulum.
   std::vector<Trial> trials;
   std::vector<Skipped> skipped = {};
+  Schedule schedule = {};
+  Stability stability = {};
+  Outline outline = {};
 };
 
 /// A Table holds words; the first row names the columns.
@@ -50,7 +55,7 @@ double evaluations_at(const Trial& trial, double comparison_dt, double dt);
 /// Returns nothing if the errors do not fall there, or if the run diverged.
 std::optional<double> order_of(const Trial& trial, const Comparison& comparison);
 
-/// Returns one sentence on whether it diverged, and how far it was off.
+/// Returns one sentence on whether it diverged, when and why, and how far it was off.
 std::string verdict_of(const Trial& trial, const Comparison& comparison);
 
 }  // namespace hooke::app

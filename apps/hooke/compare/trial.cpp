@@ -57,13 +57,18 @@ double extent_of(const Stage& stage, const std::vector<Sample>& samples) {
   return extent > 0 ? extent : 1;
 }
 
-std::vector<Sample> sample_exact(const ExactMotion& exact, const Schedule& schedule) {
-  std::vector<Sample> samples;
+/// The watched point moves as `exact` says; all other points of the object are held.
+void sample_exact(const ExactMotion& exact, const Stage& stage, const Schedule& schedule,
+                  Reference& reference) {
   for (std::size_t i = 0; i * schedule.stride <= schedule.steps; ++i) {
     const double time = schedule.time(i);
-    samples.push_back({time, exact.position(time), exact.energy(time), 0});
+    reference.samples.push_back({time, exact.position(time), exact.energy(time), 0});
   }
-  return samples;
+  for (std::uint64_t step = 0; step <= schedule.steps; step += schedule.frame_stride) {
+    Frame frame = stage.points;
+    frame[stage.point] = exact.position(static_cast<double>(step) * schedule.dt);
+    reference.frames.push_back(std::move(frame));
+  }
 }
 
 Result<Player> make_fine_player(const Stage& stage, int& divisor) {
@@ -116,16 +121,19 @@ std::optional<lab::OrderMeasurement> measure_lab_order(const Stage& stage, const
 
 }  // namespace
 
-Schedule make_schedule(double seconds, double dt) {
+Schedule make_schedule(double seconds, double dt, std::uint64_t frames) {
   const auto steps = static_cast<std::uint64_t>(std::max(1LL, std::llround(seconds / dt)));
-  return {.steps = steps, .stride = (steps + kMostSamples - 1) / kMostSamples, .dt = dt};
+  return {.steps = steps,
+          .stride = (steps + kMostSamples - 1) / kMostSamples,
+          .frame_stride = (steps + frames - 1) / frames,
+          .dt = dt};
 }
 
 Result<Reference> make_reference(const Stage& stage, const Schedule& schedule) {
   Reference reference;
   if (const auto exact = exact_motion(stage)) {
     reference.title = exact->title;
-    reference.samples = sample_exact(*exact, schedule);
+    sample_exact(*exact, stage, schedule, reference);
   } else {
     int divisor = 1;
     auto player = make_fine_player(stage, divisor);
@@ -133,6 +141,7 @@ Result<Reference> make_reference(const Stage& stage, const Schedule& schedule) {
     reference.title = text_of("the finest solution, rk4 at dt/%d", divisor);
     Progress progress("reference", schedule.steps);
     reference.samples.push_back(sample_of(player.value(), 0));
+    reference.frames.push_back(player.value().points());
     for (std::uint64_t step = 1; step <= schedule.steps; ++step) {
       for (int part = 0; part < divisor; ++part) {
         const auto done = player.value().advance();
@@ -141,6 +150,7 @@ Result<Reference> make_reference(const Stage& stage, const Schedule& schedule) {
       if (step % schedule.stride == 0) {
         reference.samples.push_back(sample_of(player.value(), schedule.dt * static_cast<double>(step)));
       }
+      if (step % schedule.frame_stride == 0) reference.frames.push_back(player.value().points());
       progress.show(step);
     }
   }
@@ -148,9 +158,9 @@ Result<Reference> make_reference(const Stage& stage, const Schedule& schedule) {
   return reference;
 }
 
-Reference no_reference(const Stage& stage) {
+Reference no_reference(const Stage& stage, const std::string& why) {
   const double size = size_of(stage);
-  return {.title = "", .samples = {}, .extent = size > 0 ? size : 1};
+  return {.title = "", .samples = {}, .extent = size > 0 ? size : 1, .missing = why};
 }
 
 Result<Trial> run_trial(const Stage& stage, const std::string& name, bool force, const Schedule& schedule,
@@ -173,6 +183,7 @@ Result<Trial> run_trial(const Stage& stage, const std::string& name, bool force,
     if (!(sample.error <= kFarAway * reference.extent)) trial.diverged_at = sample.time;
   };
   record();
+  trial.frames.push_back(player.points());
   while (step < schedule.steps && !trial.diverged_at) {
     const Result<void> done = watch.time(player.advance);
     if (!done) {
@@ -181,6 +192,7 @@ Result<Trial> run_trial(const Stage& stage, const std::string& name, bool force,
       break;
     }
     if (++step % schedule.stride == 0) record();
+    if (step % schedule.frame_stride == 0 && !trial.diverged_at) trial.frames.push_back(player.points());
     progress.show(step);
   }
   const double simulated = static_cast<double>(std::max<std::uint64_t>(step, 1)) * schedule.dt;
