@@ -500,8 +500,8 @@ struct ClothDesc {
   /// Whether points stay within their rest distance of the pins, whatever pulls at them (tethers). If it is
   /// not set, they do in cloth that can neither burst nor tear and has an `extension_max`, or would stretch
   /// by less than 0.1 % if it hung by one side: its springs are to hold, and one pass over them in a substep
-  /// cannot. They may then be `extension_max`, or 0.2 %, farther away. Hooks are no pins. Of more than 256
-  /// pins, or 32 of a mesh, those that lie far apart have tethers.
+  /// cannot. They may then be 0.2 % farther away, or `extension_max` if that is less or springs are softer.
+  /// Hooks are no pins. Of more than 256 pins, or 32 of a mesh, those that lie far apart have tethers.
   std::optional<bool> tethers = {};
   /// Pressure of the gas in a closed mesh when it is added, above the 101325 Pa of the air around it [Pa].
   /// [-1e5, 1e8] The product of absolute pressure and volume then stays the same. There is no gas by default.
