@@ -164,9 +164,10 @@ std::string moving_part(const Comparison& comparison) {
 
 std::string plots_part(const Comparison& comparison) {
   std::string text = "<h2>Plots</h2>\n<div id=\"plot-1\"></div>\n<div id=\"plot-2\"></div>\n";
-  if (comparison.schedule.stride > 1)
+  if (comparison.schedule.stride > 1) {
     text += text_of("<p class=\"about\">One step of %zu was kept.</p>\n",
                     static_cast<std::size_t>(comparison.schedule.stride));
+  }
   return text;
 }
 

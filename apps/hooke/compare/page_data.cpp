@@ -161,9 +161,10 @@ Json motion_of(const Comparison& comparison, const Box& box, const Projection& p
 
 Json method_json(const MethodGrowth& method, const char* color) {
   Json curve = Json::array();
-  for (const GrowthPoint& point : method.curve)
+  for (const GrowthPoint& point : method.curve) {
     curve.push_back(
         {shortened(point.omega_dt), std::strtod(text_of_number(point.growth, 12).c_str(), nullptr)});
+  }
   Json spans = Json::array();
   for (const StableSpan& span : method.stable)
     spans.push_back({shortened(span.imaginary), shortened(span.from), shortened(span.to)});

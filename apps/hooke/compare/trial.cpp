@@ -15,10 +15,11 @@ namespace {
 constexpr std::uint64_t kMostSamples = 4000;
 constexpr int kLeastDivisor = 16;  // Least divisor of the reference's step.
 constexpr int kMostDivisor = 4096;
-constexpr double kFarAway = 10;         // Extents beyond which a run has diverged.
-constexpr int kHalvings = 4;            // Halvings for the order.
-constexpr double kOrderSeconds = 1;     // Longer runs measure chaos instead.
-constexpr double kMostOrderWork = 4e7;  // Points times evaluations, which take half a minute.
+constexpr double kFarAway = 10;             // Extents beyond which a run has diverged.
+constexpr int kHalvings = 4;                // Halvings for the order.
+constexpr double kOrderSeconds = 1;         // Longer runs measure chaos instead.
+constexpr double kMostOrderWork = 4e7;      // Points times evaluations, which take half a minute.
+constexpr double kMostReferenceWork = 1e8;  // The same for the reference.
 
 /// Sums up wall time over calls.
 class Stopwatch {
@@ -138,6 +139,14 @@ Result<Reference> make_reference(const Stage& stage, const Schedule& schedule) {
     int divisor = 1;
     auto player = make_fine_player(stage, divisor);
     if (!player) return player.error();
+    const auto points = static_cast<double>(player.value().points().size());
+    if (4 * points * divisor * static_cast<double>(schedule.steps) > kMostReferenceWork) {
+      return Error{
+          ErrorCode::kUnsupported, "",
+          text_of("the finest solution would take %llu steps of %.0f points; a shorter --seconds has one",
+                  static_cast<unsigned long long>(schedule.steps) * static_cast<unsigned long long>(divisor),
+                  points)};
+    }
     reference.title = text_of("the finest solution, rk4 at dt/%d", divisor);
     Progress progress("reference", schedule.steps);
     reference.samples.push_back(sample_of(player.value(), 0));

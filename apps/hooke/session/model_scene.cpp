@@ -162,12 +162,13 @@ Result<SceneDocument> turn_model(const SceneDocument& document, ModelForm form) 
   drop_model(objects.bodies);
   drop_model(objects.solids);
   drop_model(objects.cloths);
-  if (form == ModelForm::kJelly)
+  if (form == ModelForm::kJelly) {
     objects.solids.push_back(solid_of(extent, length(turned.scene.world.gravity)));
-  else if (form == ModelForm::kCloth)
+  } else if (form == ModelForm::kCloth) {
     objects.cloths.push_back(cloth_of(extent, points));
-  else
+  } else {
     objects.bodies.push_back(body_of(extent, form == ModelForm::kRigid));
+  }
   turned.text = write_scene(turned.scene);
   return turned;
 }

@@ -314,79 +314,93 @@ const Kind& kind_of<SceneMesh>() {
   return kind;
 }
 
+namespace {
+
+std::vector<Field> look_rows() {
+  return {
+      field<&SceneMaterial::color>("color", "", between(0, 1), "Red, green, blue, linear."),
+      field<&SceneMaterial::texture>("texture", "", kNotEmpty, "An image, relative to the scene file."),
+      field<&SceneMaterial::normal_map>(
+          "normal_map", "", kNotEmpty,
+          "An image of normals (red right, green up, blue outward), or of heights in grays."),
+      field<&SceneMaterial::normal_scale>("normal_scale", "", between(-100, 100),
+                                          "Strength of its relief; negative turns it inward."),
+      field<&SceneMaterial::roughness_map>(
+          "roughness_map", "", kNotEmpty,
+          "An image whose green multiplies `roughness`, and whose blue `metalness`."),
+      field<&SceneMaterial::shininess>("shininess", "", between(1, 1000),
+                                       "Blinn-Phong exponent, without a `roughness`."),
+      field<&SceneMaterial::opacity>("opacity", "", between(0, 1), "1 hides what is behind."),
+      field<&SceneMaterial::like>("like", "", kNotEmpty,
+                                  "A material of the library, which gives what is not said here."),
+      field<&SceneMaterial::metalness>("metalness", "", between(0, 1), "1 is a metal."),
+      field<&SceneMaterial::roughness>("roughness", "", between(0, 1),
+                                       "0 is a mirror, 1 chalk; by `shininess` without it."),
+      field<&SceneMaterial::transmission>("transmission", "", between(0, 1),
+                                          "Share of the light that goes through, as through glass."),
+      field<&SceneMaterial::sheen>("sheen", "", between(0, 1), "Light at the rim of a cloth, by its fibers."),
+      field<&SceneMaterial::thread_pitch>("thread_pitch", "m", kPositive,
+                                          "Distance of the threads of a grid of cloth."),
+      field<&SceneMaterial::hair>("hair", "", kAny, "Ropes are drawn as tufts of hair.")};
+}
+
+/// What a material says of what is made of it, and of contacts.
+std::vector<Field> matter_rows() {
+  return {
+      field<&SceneMaterial::density>("density", "kg/m^3", kPositive,
+                                     "Of dynamic bodies and solids that give no mass themselves."),
+      field<&SceneMaterial::young_modulus>("young_modulus", "Pa", kPositive,
+                                           "Of solids that do not give it themselves."),
+      field<&SceneMaterial::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
+                                           "Of solids that do not give it themselves."),
+      field<&SceneMaterial::areal_density>("areal_density", "kg/m^2", kPositive,
+                                           "Of cloths that give no mass themselves."),
+      field<&SceneMaterial::stretch_stiffness>(
+          "stretch_stiffness", "N/m", kPositive,
+          "Of cloths that do not give it themselves: force per width over strain."),
+      field<&SceneMaterial::shear_stiffness>(
+          "shear_stiffness", "N/m", kPositive,
+          "Of cloths that do not give it themselves: force per width over the angle [rad]."),
+      field<&SceneMaterial::bend_stiffness>(
+          "bend_stiffness", "N m", kPositive,
+          "Of cloths that do not give it themselves and do not bend by springs."),
+      field<&SceneMaterial::linear_density>("linear_density", "kg/m", kPositive,
+                                            "Of ropes that give no mass themselves."),
+      field<&SceneMaterial::diameter>("diameter", "m", kPositive, "Of ropes that give no radius themselves."),
+      field<&SceneMaterial::strength>("strength", "N", kPositive, "Of ropes that do not give it themselves."),
+      field<&SceneMaterial::yields>("yields", "", kAny,
+                                    "Of bodies that move, are no compounds and do not give it themselves."),
+      field<&SceneMaterial::friction>(
+          "friction", "", between(0, 100),
+          "Coulomb coefficient while sliding; a contact uses sqrt(a b) of the two surfaces."),
+      field<&SceneMaterial::static_friction>("static_friction", "", between(0, 100),
+                                             "While at rest; not below `friction`."),
+      field<&SceneMaterial::restitution>(
+          "restitution", "", between(0, 1),
+          "Speed after over speed before; a contact uses the larger of the two."),
+      field<&SceneMaterial::rolling_friction>(
+          "rolling_friction", "m", kNotNegative,
+          "Lever of the resistance to rolling; a contact uses the larger of the two."),
+      field<&SceneMaterial::spinning_friction>(
+          "spinning_friction", "m", kNotNegative,
+          "Lever of the resistance to spin; a contact uses the larger of the two.")};
+}
+
+std::vector<Field> material_rows() {
+  std::vector<Field> rows = look_rows();
+  const std::vector<Field> matter = matter_rows();
+  rows.insert(rows.end(), matter.begin(), matter.end());
+  return rows;
+}
+
+}  // namespace
+
 template <>
 const Kind& kind_of<SceneMaterial>() {
-  static const Kind kind = {
-      .name = "material",
-      .help = "How a surface looks and how it answers a contact.",
-      .fields = {field<&SceneMaterial::color>("color", "", between(0, 1), "Red, green, blue, linear."),
-                 field<&SceneMaterial::texture>("texture", "", kNotEmpty,
-                                                "An image, relative to the scene file."),
-                 field<&SceneMaterial::normal_map>(
-                     "normal_map", "", kNotEmpty,
-                     "An image of normals (red right, green up, blue outward), or of heights in grays."),
-                 field<&SceneMaterial::normal_scale>("normal_scale", "", between(-100, 100),
-                                                     "Strength of its relief; negative turns it inward."),
-                 field<&SceneMaterial::roughness_map>(
-                     "roughness_map", "", kNotEmpty,
-                     "An image whose green multiplies `roughness`, and whose blue `metalness`."),
-                 field<&SceneMaterial::shininess>("shininess", "", between(1, 1000),
-                                                  "Blinn-Phong exponent, without a `roughness`."),
-                 field<&SceneMaterial::opacity>("opacity", "", between(0, 1), "1 hides what is behind."),
-                 field<&SceneMaterial::like>("like", "", kNotEmpty,
-                                             "A material of the library, which gives what is not said here."),
-                 field<&SceneMaterial::metalness>("metalness", "", between(0, 1), "1 is a metal."),
-                 field<&SceneMaterial::roughness>("roughness", "", between(0, 1),
-                                                  "0 is a mirror, 1 chalk; by `shininess` without it."),
-                 field<&SceneMaterial::transmission>(
-                     "transmission", "", between(0, 1),
-                     "Share of the light that goes through, as through glass."),
-                 field<&SceneMaterial::sheen>("sheen", "", between(0, 1),
-                                              "Light at the rim of a cloth, by its fibers."),
-                 field<&SceneMaterial::thread_pitch>("thread_pitch", "m", kPositive,
-                                                     "Distance of the threads of a grid of cloth."),
-                 field<&SceneMaterial::hair>("hair", "", kAny, "Ropes are drawn as tufts of hair."),
-                 field<&SceneMaterial::density>("density", "kg/m^3", kPositive,
-                                                "Of dynamic bodies and solids that give no mass themselves."),
-                 field<&SceneMaterial::young_modulus>("young_modulus", "Pa", kPositive,
-                                                      "Of solids that do not give it themselves."),
-                 field<&SceneMaterial::poisson_ratio>(
-                     "poisson_ratio", "", between(0, 0.499), "Of solids that do not give it themselves."),
-                 field<&SceneMaterial::areal_density>("areal_density", "kg/m^2", kPositive,
-                                                      "Of cloths that give no mass themselves."),
-                 field<&SceneMaterial::stretch_stiffness>(
-                     "stretch_stiffness", "N/m", kPositive,
-                     "Of cloths that do not give it themselves: force per width over strain."),
-                 field<&SceneMaterial::shear_stiffness>(
-                     "shear_stiffness", "N/m", kPositive,
-                     "Of cloths that do not give it themselves: force per width over the angle [rad]."),
-                 field<&SceneMaterial::bend_stiffness>(
-                     "bend_stiffness", "N m", kPositive,
-                     "Of cloths that do not give it themselves and do not bend by springs."),
-                 field<&SceneMaterial::linear_density>("linear_density", "kg/m", kPositive,
-                                                       "Of ropes that give no mass themselves."),
-                 field<&SceneMaterial::diameter>("diameter", "m", kPositive,
-                                                 "Of ropes that give no radius themselves."),
-                 field<&SceneMaterial::strength>("strength", "N", kPositive,
-                                                 "Of ropes that do not give it themselves."),
-                 field<&SceneMaterial::yields>(
-                     "yields", "", kAny,
-                     "Of bodies that move, are no compounds and do not give it themselves."),
-                 field<&SceneMaterial::friction>(
-                     "friction", "", between(0, 100),
-                     "Coulomb coefficient while sliding; a contact uses sqrt(a b) of the two surfaces."),
-                 field<&SceneMaterial::static_friction>("static_friction", "", between(0, 100),
-                                                        "While at rest; not below `friction`."),
-                 field<&SceneMaterial::restitution>(
-                     "restitution", "", between(0, 1),
-                     "Speed after over speed before; a contact uses the larger of the two."),
-                 field<&SceneMaterial::rolling_friction>(
-                     "rolling_friction", "m", kNotNegative,
-                     "Lever of the resistance to rolling; a contact uses the larger of the two."),
-                 field<&SceneMaterial::spinning_friction>(
-                     "spinning_friction", "m", kNotNegative,
-                     "Lever of the resistance to spin; a contact uses the larger of the two.")},
-      .defaults = defaults_of<SceneMaterial>};
+  static const Kind kind = {.name = "material",
+                            .help = "How a surface looks and how it answers a contact.",
+                            .fields = material_rows(),
+                            .defaults = defaults_of<SceneMaterial>};
   return kind;
 }
 

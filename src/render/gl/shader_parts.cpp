@@ -257,14 +257,7 @@ float source_visibility(int i, vec3 point, vec3 normal, Source source, float n_d
 }
 )";
 
-}  // namespace
-
-std::string shadow_part() {
-  return std::string(kShadowPart) + kLightsPart;
-}
-
-std::string reflection_part() {
-  return R"(
+constexpr const char* kReflectionPart = R"(
 uniform sampler2D occlusion_map;
 
 // How much of the sky a pixel sees; see the occlusion shader.
@@ -297,6 +290,9 @@ vec3 highlight_of(vec3 l, vec3 f0, float roughness, vec3 n, vec3 v, float n_dot_
   return (f0 + (1.0 - f0) * (away2 * away2 * away)) * min(spread * shadowing, 60.0);
 }
 
+)";
+
+constexpr const char* kLightPart = R"(
 // The light that comes back apart from color below the surface (x of the pair) and from the surface itself.
 struct Light {
   vec3 inner;  // to be multiplied by the color
@@ -324,6 +320,15 @@ Light light_at(vec3 f0, float roughness, vec3 n, vec3 v, vec3 point) {
   return light;
 }
 )";
+
+}  // namespace
+
+std::string shadow_part() {
+  return std::string(kShadowPart) + kLightsPart;
+}
+
+std::string reflection_part() {
+  return std::string(kReflectionPart) + kLightPart;
 }
 
 std::string mesh_inputs_part() {

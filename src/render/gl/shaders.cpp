@@ -63,11 +63,12 @@ vec4 surface_color() {
 
 /// The normal and the finish of the surface, with what images say of them.
 std::string detail_part(bool detailed) {
-  if (!detailed)
+  if (!detailed) {
     return R"(
 vec3 shaded_normal(vec3 n) { return n; }
 vec2 shaded_finish() { return finish.xy; }
 )";
+  }
   return R"(
 uniform sampler2D normals_map;
 uniform sampler2D finish_map;

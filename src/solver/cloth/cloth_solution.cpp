@@ -351,6 +351,27 @@ void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint
   for (std::size_t i = 0; i < points_; ++i) v_[i] -= (1 / mass) * made + cross(turn, x_[i] - center);
 }
 
+/// Goes from v_ to the minimum, while points are let go and taken hold of. Returns whether it came there.
+bool ClothSolution::find_minimum() {
+  energy_ = energy(v_);
+  directions_ = 0;
+  accepted_ = -1;
+  int renewals = 0;
+  for (int step = 0; step < kMostClothSteps; ++step) {
+    linearize_freely();
+    if (step > 0 && renewals < kMostPressRenewals && bodies_.renew(v_, residual_, per_diagonal_)) {
+      ++renewals;
+      bodies_.move_along(v_);
+      energy_ = energy(v_);
+      linearize_freely();
+    }
+    restrict_to_freedom();
+    if (!find_change()) return true;
+    if (!may_go_on() || !go_down()) return false;
+  }
+  return false;
+}
+
 bool ClothSolution::solve(const state::Deformable& cloth, std::span<const Vec3> unsprung,
                           std::span<ClothPress> presses, bool with_bends, double h, state::Tables& tables) {
   h_ = h;
@@ -364,23 +385,7 @@ bool ClothSolution::solve(const state::Deformable& cloth, std::span<const Vec3> 
   from_passes_ = v_;
   v_ = unsprung_;
   bodies_.move_along(v_);
-  energy_ = energy(v_);
-  directions_ = 0;
-  accepted_ = -1;
-  bool is_solved = false;
-  int renewals = 0;
-  for (int step = 0; step < kMostClothSteps && !is_solved; ++step) {
-    linearize_freely();
-    if (step > 0 && renewals < kMostPressRenewals && bodies_.renew(v_, residual_, per_diagonal_)) {
-      ++renewals;
-      bodies_.move_along(v_);
-      energy_ = energy(v_);
-      linearize_freely();
-    }
-    restrict_to_freedom();
-    is_solved = !find_change();
-    if (!is_solved && (!may_go_on() || !go_down())) break;
-  }
+  const bool is_solved = find_minimum();
   bodies_.move_along(from_passes_);
   if (!is_solved && energy(from_passes_) < energy_) std::swap(v_, from_passes_);
   if (!bodies_.empty()) {

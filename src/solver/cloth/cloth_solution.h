@@ -85,6 +85,7 @@ class ClothSolution {
   [[nodiscard]] bool may_go_on() const;
   [[nodiscard]] bool find_change();
   [[nodiscard]] bool go_down();
+  [[nodiscard]] bool find_minimum();
   void keep_momentum(std::span<const ClothPress> presses, std::uint32_t first_particle);
 
   double h_ = 0;         ///< Length of the substep [s].

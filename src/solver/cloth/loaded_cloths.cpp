@@ -122,7 +122,8 @@ bool is_drawn_out(const state::Tables& tables, const state::Deformable& cloth) {
   return false;
 }
 
-/// Drops what a linear problem says nothing of: what moves too far within the substep, and tangled cloths.
+/// Drops what a linear problem says nothing of: what moves too far within the substep, tangled cloths, and
+/// those that bear by their gas, which knows of no bodies.
 void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
                        LoadedCloths& loaded) {
   std::size_t known = bearings.size();  // Of what follows.
@@ -134,7 +135,8 @@ void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tabl
     if (i != known) {
       known = i;
       velocity = mean_velocity(tables, tables.objects[bearings[i].object]);
-      is_wild = is_drawn_out(tables, tables.objects[bearings[i].object]);
+      const state::Deformable& cloth = tables.objects[bearings[i].object];
+      is_wild = cloth.gas > 0 || is_drawn_out(tables, cloth);
     }
     const DVec3 speed = vector_cast<double>(tables.bodies.motion[press.body].v) - velocity;
     return is_wild || length(speed) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
