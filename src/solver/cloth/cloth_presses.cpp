@@ -76,8 +76,9 @@ void find_cloth_presses(const state::Tables& t, Real h, std::vector<ClothPress>&
   }
 }
 
-void share_out_bodies(const state::Tables& t, std::vector<ClothPress>& presses) {
-  std::vector<std::uint32_t> pressing;
+void share_out_bodies(const state::Tables& t, std::span<ClothPress> presses,
+                      std::vector<std::uint32_t>& pressing) {
+  pressing.clear();
   for (const ClothPress& press : presses) {
     if (press.presses && press.gives_way) pressing.push_back(press.body);
   }
@@ -305,28 +306,28 @@ bool PressingBodies::renew(std::span<const DVec3> velocities, std::span<const DV
 
 void PressingBodies::note_impulses(std::span<const DVec3> velocities, std::span<const DVec3> before,
                                    std::span<const DVec3> residual, bool is_solved,
-                                   std::span<ClothPress> presses) const {
-  std::vector<std::uint8_t> is_noted(bodies_.size(), 0);
-  std::vector<int> held(bodies_.size(), 0);
+                                   std::span<ClothPress> presses) {
+  is_noted_.assign(bodies_.size(), 0);
+  held_.assign(bodies_.size(), 0);
   for (const Press& press : presses_) {
-    if (press.row != kHeld) held[press.body] += press.touch != Touch::kFree;
+    if (press.row != kHeld) held_[press.body] += press.touch != Touch::kFree;
   }
   for (const Press& press : presses_) {
     DVec3 push;
     if (press.row != kHeld) {
       const Body& body = bodies_[press.body];
       push = body.mass * (velocities[press.row] - before[press.row]);
-      if (is_noted[press.body] == 0) {
+      if (is_noted_[press.body] == 0) {
         const DVec3 turned = velocities[press.row + 1] - before[press.row + 1];
         presses[press.index].push = push;
         presses[press.index].turn = (1.0 / press.of.cloths) * (math::inverse(body.scale) * turned);
-        is_noted[press.body] = 1;
+        is_noted_[press.body] = 1;
       }
     }
     if (press.touch == Touch::kFree) continue;
     const DVec3 n = press.of.normal;
     const bool shares = !is_solved && press.row != kHeld;
-    const DVec3 given = shares ? (-1.0 / held[press.body]) * push : -residual[press.point];
+    const DVec3 given = shares ? (-1.0 / held_[press.body]) * push : -residual[press.point];
     const double along = std::max(dot(n, given), 0.0);
     const DVec3 friction =
         press.touch == Touch::kSticks ? given - dot(n, given) * n : -press.drag * sliding(press, velocities);

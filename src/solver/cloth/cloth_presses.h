@@ -45,8 +45,9 @@ struct ClothPress {
 /// substep of `h` [s].
 void find_cloth_presses(const state::Tables& tables, Real h, std::vector<ClothPress>& presses);
 
-/// Shares out the mass of each body to its presses.
-void share_out_bodies(const state::Tables& tables, std::vector<ClothPress>& presses);
+/// Shares out the mass of each body to its presses. `pressing` is scratch.
+void share_out_bodies(const state::Tables& tables, std::span<ClothPress> presses,
+                      std::vector<std::uint32_t>& pressing);
 
 /// Gives bodies the impulses of the solutions. Call it before contacts are solved.
 void release_cloth_presses(std::span<const ClothPress> presses, state::Tables& tables);
@@ -93,7 +94,7 @@ class PressingBodies {
   /// Writes what bodies and points give each other to those taken, for the same residual. `before` are
   /// velocities without the cloth. Points of what is not solved to the end share evenly.
   void note_impulses(std::span<const DVec3> velocities, std::span<const DVec3> before,
-                     std::span<const DVec3> residual, bool is_solved, std::span<ClothPress> presses) const;
+                     std::span<const DVec3> residual, bool is_solved, std::span<ClothPress> presses);
 
  private:
   static constexpr std::size_t kHeld = std::numeric_limits<std::size_t>::max();
@@ -123,6 +124,8 @@ class PressingBodies {
 
   std::vector<Press> presses_;
   std::vector<Body> bodies_;
+  std::vector<std::uint8_t> is_noted_;  ///< Scratch: by body.
+  std::vector<int> held_;               ///< Scratch: by body, points that it holds.
   bool is_held_ = false;
 };
 

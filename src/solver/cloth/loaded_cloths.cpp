@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace hooke::solver {
 
@@ -145,7 +144,8 @@ void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tabl
 
 /// Drops bodies that are hooked to the cloth: its points have got their mass already.
 void drop_hooked_presses(const state::Tables& tables, LoadedCloths& loaded) {
-  std::vector<PressingBody> hooked;
+  std::vector<PressingBody>& hooked = loaded.pairs;
+  hooked.clear();
   for (const state::Hook& hook : tables.hooks) {
     if (hook.broken || hook.a.is_point() == hook.b.is_point()) continue;
     const state::HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
@@ -162,9 +162,9 @@ void drop_hooked_presses(const state::Tables& tables, LoadedCloths& loaded) {
 
 /// Lists the bodies that press on points which something bears from below, or from the other side where
 /// nothing is below: it bears these bodies, too.
-std::vector<std::uint32_t> find_borne(std::span<const ClothPress> presses, DVec3 gravity) {
+void find_borne(std::span<const ClothPress> presses, DVec3 gravity, std::vector<std::uint32_t>& borne) {
   const bool is_weightless = !(length_squared(gravity) > 0);
-  std::vector<std::uint32_t> borne;
+  borne.clear();
   for (std::size_t first = 0; first < presses.size();) {
     std::size_t end = first;
     const DVec3 up = is_weightless ? presses[first].normal : -gravity;
@@ -178,14 +178,14 @@ std::vector<std::uint32_t> find_borne(std::span<const ClothPress> presses, DVec3
     }
   }
   std::sort(borne.begin(), borne.end());
-  return borne;
 }
 
 /// Marks the cloths on which too much lies: what gravity presses on them, and nothing else bears.
 void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& tables, LoadedCloths& loaded) {
   const auto gravity = vector_cast<double>(tables.desc.gravity);
   const double size = length(gravity);
-  const std::vector<std::uint32_t> borne = find_borne(loaded.presses, gravity);
+  std::vector<std::uint32_t>& borne = loaded.bodies;
+  find_borne(loaded.presses, gravity, borne);
   loaded.pressing_masses.assign(bearings.size(), 0);
   for (const ClothPress& press : loaded.presses) {
     if (std::binary_search(borne.begin(), borne.end(), press.body)) continue;
@@ -199,17 +199,18 @@ void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& t
 /// Drops what presses on other cloths, and counts the cloths that hold each body.
 void keep_presses_of_loaded(std::span<const ClothBearing> bearings, const state::Tables& tables,
                             LoadedCloths& loaded) {
-  std::vector<std::pair<std::uint32_t, std::size_t>> holds;  // Of which body which cloth.
+  std::vector<PressingBody>& holds = loaded.pairs;  // Of which body which cloth.
+  holds.clear();
   std::erase_if(loaded.presses, [&](const ClothPress& press) {
     const std::size_t i = bearing_with(bearings, tables, press.particle);
     const bool is_loaded = i < bearings.size() && (loaded.marks[i] != 0 || bearings[i].has_heavy_points);
-    if (is_loaded) holds.emplace_back(press.body, i);
+    if (is_loaded) holds.push_back({.object = bearings[i].object, .body = press.body});
     return !is_loaded;
   });
   std::sort(holds.begin(), holds.end());
   holds.erase(std::unique(holds.begin(), holds.end()), holds.end());
   for (ClothPress& press : loaded.presses) {
-    const auto of_body = [&](const auto& hold) { return hold.first == press.body; };
+    const auto of_body = [&](const PressingBody& hold) { return hold.body == press.body; };
     press.cloths = static_cast<int>(std::count_if(holds.begin(), holds.end(), of_body));
   }
 }
@@ -236,7 +237,7 @@ void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Ta
   find_cloth_presses(tables, h, loaded.presses);
   drop_wild_presses(bearings, tables, h, loaded);
   drop_hooked_presses(tables, loaded);
-  share_out_bodies(tables, loaded.presses);
+  share_out_bodies(tables, loaded.presses, loaded.bodies);
   mark_pressed(bearings, tables, loaded);
   for (const ClothPress& press : loaded.presses) {
     const std::size_t i = bearing_with(bearings, tables, press.particle);

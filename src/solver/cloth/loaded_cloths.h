@@ -52,6 +52,8 @@ struct LoadedCloths {
   std::vector<std::uint8_t> is_unconverged;  ///< By cloth, 1 for what was not solved to the end.
   std::vector<std::uint8_t> marks;           ///< Scratch: by bearing, how it is loaded, or 0.
   std::vector<double> pressing_masses;       ///< Scratch: by bearing, the mass that presses on it [kg].
+  std::vector<std::uint32_t> bodies;         ///< Scratch: rows of bodies.
+  std::vector<PressingBody> pairs;           ///< Scratch: cloths with bodies.
 };
 
 /// Finds what each cloth can bear; call it when tables change.
