@@ -282,22 +282,24 @@ void Session::obey(const Seek& seek) {
   state_.problem.clear();
 }
 
+/// Goes on with the last of `from`, and keeps what was there in `to`.
+void Session::change_scene(std::vector<LivePtr>& from, std::vector<LivePtr>& to, const char* said) {
+  to.push_back(std::move(live_));
+  take(std::move(from.back()));
+  from.pop_back();
+  say({true, said});
+}
+
 void Session::obey(const Undo& /*undo*/) {
   state_.problem.clear();
   if (live_->undo_count() > 0 || past_.empty()) return say(live_->undo());
-  future_.push_back(std::move(live_));
-  take(std::move(past_.back()));
-  past_.pop_back();
-  say({true, "undone: change of the scene"});
+  change_scene(past_, future_, "undone: change of the scene");
 }
 
 void Session::obey(const Redo& /*redo*/) {
   state_.problem.clear();
   if (live_->redo_count() > 0 || future_.empty()) return say(live_->redo());
-  past_.push_back(std::move(live_));
-  take(std::move(future_.back()));
-  future_.pop_back();
-  say({true, "done again: change of the scene"});
+  change_scene(future_, past_, "done again: change of the scene");
 }
 
 void Session::obey(const Restart& /*restart*/) {

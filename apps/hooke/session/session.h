@@ -185,6 +185,7 @@ class Session {
   bool load();
   LivePtr build(SharedDocument document);
   void take(LivePtr live);
+  void change_scene(std::vector<LivePtr>& from, std::vector<LivePtr>& to, const char* said);
   /// Reads the file again if it was saved, and returns whether it was.
   bool look_at_file();
   void play();

@@ -107,28 +107,32 @@ vec2 first_way() {
   return vec2(cos(6.2831853 * turn), sin(6.2831853 * turn));
 }
 
-#ifdef FAST
-// A 3 x 3 tent from four bilinear taps (Castano, "Shadow mapping summary", 2013).
-float narrow_shadow(vec3 place, bool is_open) {
-  float size = shadow_info.y;
-  vec2 texel = place.xy * size;
+// A 3 x 3 tent from four bilinear taps (Castano, "Shadow mapping summary", 2013), in the part of a map that
+// begins at a corner [texels].
+float tent_shadow(sampler2DShadow map, vec2 map_size, vec2 corner, vec2 texel, float z, bool is_open) {
   vec2 base = floor(texel + 0.5);
   vec2 part = texel + 0.5 - base;
-  base -= 0.5;
+  base += corner - 0.5;
   vec2 w0 = 3.0 - 2.0 * part;
   vec2 w1 = 1.0 + 2.0 * part;
-  vec2 p0 = (base + (2.0 - part) / w0 - 1.0) / size;
-  vec2 p1 = (base + part / w1 + 1.0) / size;
-  float depth = min(place.z, 1.0);
+  vec2 p0 = (base + (2.0 - part) / w0 - 1.0) / map_size;
+  vec2 p1 = (base + part / w1 + 1.0) / map_size;
+  float depth = min(z, 1.0);
   // A loop that may run zero times: software drivers compute both sides of an if, but leave a loop.
   float sum = 0.0;
   int rows = is_open ? 2 : 0;
   for (int row = 0; row < rows; ++row) {
     float y = row == 0 ? p0.y : p1.y;
-    sum += (row == 0 ? w0.y : w1.y) * (w0.x * textureLod(shadow_map, vec3(p0.x, y, depth), 0.0) +
-                                       w1.x * textureLod(shadow_map, vec3(p1.x, y, depth), 0.0));
+    sum += (row == 0 ? w0.y : w1.y) * (w0.x * textureLod(map, vec3(p0.x, y, depth), 0.0) +
+                                       w1.x * textureLod(map, vec3(p1.x, y, depth), 0.0));
   }
   return rows > 0 ? sum / 16.0 : 1.0;
+}
+
+#ifdef FAST
+float narrow_shadow(vec3 place, bool is_open) {
+  float size = shadow_info.y;
+  return tent_shadow(shadow_map, vec2(size), vec2(0.0), place.xy * size, place.z, is_open);
 }
 #else
 // The sun is a disk, so the half shadow grows with the distance of what casts it (Fernando, "Percentage-closer
@@ -235,25 +239,8 @@ float source_visibility(int i, vec3 point, vec3 normal, Source source, float n_d
   bool is_open = map.x >= 0.0 && n_dot_l > 0.0 && inside;
   float size = light_count.y;
   vec2 texel = clamp(place.xy * size, 2.0, size - 2.0);
-  vec2 base = floor(texel + 0.5);
-  vec2 part = texel + 0.5 - base;
-  base -= 0.5;
-  vec2 w0 = 3.0 - 2.0 * part;
-  vec2 w1 = 1.0 + 2.0 * part;
   vec2 tile = vec2(mod(number, 4.0), floor(number / 4.0)) * size;
-  vec2 all_size = vec2(4.0, light_count.z) * size;
-  vec2 p0 = (tile + base + (2.0 - part) / w0 - 1.0) / all_size;
-  vec2 p1 = (tile + base + part / w1 + 1.0) / all_size;
-  float depth = min(place.z, 1.0);
-  // A loop that may run zero times: software drivers compute both sides of an if, but leave a loop.
-  float sum = 0.0;
-  int rows = is_open ? 2 : 0;
-  for (int row = 0; row < rows; ++row) {
-    float y = row == 0 ? p0.y : p1.y;
-    sum += (row == 0 ? w0.y : w1.y) * (w0.x * textureLod(light_maps, vec3(p0.x, y, depth), 0.0) +
-                                       w1.x * textureLod(light_maps, vec3(p1.x, y, depth), 0.0));
-  }
-  return rows > 0 ? sum / 16.0 : 1.0;
+  return tent_shadow(light_maps, vec2(4.0, light_count.z) * size, tile, texel, place.z, is_open);
 }
 )";
 

@@ -15,11 +15,6 @@ namespace {
 
 using math::Symmetric3;
 
-Symmetric3<double> in_double(const Symmetric3<Real>& m) {
-  return {static_cast<double>(m.xx), static_cast<double>(m.xy), static_cast<double>(m.xz),
-          static_cast<double>(m.yy), static_cast<double>(m.yz), static_cast<double>(m.zz)};
-}
-
 /// (1 - n n^T) a (1 - n n^T), with s along n.
 Symmetric3<double> across(const Symmetric3<double>& a, DVec3 n, double s) {
   const DVec3 t = a * n;
@@ -132,7 +127,8 @@ void PressingBodies::take(std::uint32_t first_particle, std::span<const ClothPre
     } else if (known == bodies_.end()) {
       const state::MotionRecord& motion = t.bodies.motion[press.body];
       const double mass = 1 / (press.cloths * static_cast<double>(motion.inverse_mass));
-      bodies_.push_back({.row = press.body, .scale = in_double(t.bodies.scale[press.body]), .mass = mass});
+      bodies_.push_back(
+          {.row = press.body, .scale = math::in_double(t.bodies.scale[press.body]), .mass = mass});
       velocities.push_back(vector_cast<double>(motion.v));
       velocities.push_back(vector_cast<double>(motion.omega_scaled));
       masses.push_back(mass);

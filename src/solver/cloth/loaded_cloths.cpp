@@ -10,7 +10,7 @@ namespace hooke::solver {
 
 namespace {
 
-// Marks of LoadedCloths::marks.
+// Marks of LoadedCloths::marks, 0 for what is not loaded. The larger one counts.
 constexpr std::uint8_t kPressed = 1;
 constexpr std::uint8_t kLoadedAtPoints = 2;
 
@@ -133,8 +133,8 @@ void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tabl
     if (i == bearings.size()) return true;
     if (i != known) {
       known = i;
-      velocity = mean_velocity(tables, tables.objects[bearings[i].object]);
       const state::Deformable& cloth = tables.objects[bearings[i].object];
+      velocity = mean_velocity(tables, cloth);
       is_wild = cloth.gas > 0 || is_drawn_out(tables, cloth);
     }
     const DVec3 speed = vector_cast<double>(tables.bodies.motion[press.body].v) - velocity;
@@ -192,7 +192,8 @@ void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& t
     const std::size_t i = bearing_with(bearings, tables, press.particle);
     double& mass = loaded.pressing_masses[i];
     mass += press.share * (size > 0 ? std::max(0.0, dot(press.normal, gravity)) / size : 1);
-    if (mass > static_cast<double>(bearings[i].most_mass)) loaded.marks[i] = kPressed;
+    if (mass > static_cast<double>(bearings[i].most_mass))
+      loaded.marks[i] = std::max(loaded.marks[i], kPressed);
   }
 }
 
@@ -203,7 +204,7 @@ void keep_presses_of_loaded(std::span<const ClothBearing> bearings, const state:
   holds.clear();
   std::erase_if(loaded.presses, [&](const ClothPress& press) {
     const std::size_t i = bearing_with(bearings, tables, press.particle);
-    const bool is_loaded = i < bearings.size() && (loaded.marks[i] != 0 || bearings[i].has_heavy_points);
+    const bool is_loaded = i < bearings.size() && loaded.marks[i] != 0;
     if (is_loaded) holds.push_back({.object = bearings[i].object, .body = press.body});
     return !is_loaded;
   });
@@ -231,7 +232,9 @@ std::vector<ClothBearing> find_bearings(const state::Tables& tables) {
 void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
                          LoadedCloths& loaded) {
   loaded.presses.clear();
-  loaded.marks.assign(bearings.size(), 0);
+  loaded.marks.clear();
+  for (const ClothBearing& bearing : bearings)
+    loaded.marks.push_back(bearing.has_heavy_points ? kLoadedAtPoints : 0);
   loaded.pressing.clear();
   if (bearings.empty()) return;
   find_cloth_presses(tables, h, loaded.presses);
@@ -241,7 +244,7 @@ void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Ta
   mark_pressed(bearings, tables, loaded);
   for (const ClothPress& press : loaded.presses) {
     const std::size_t i = bearing_with(bearings, tables, press.particle);
-    if (press.presses && press.gives_way && (loaded.marks[i] != 0 || bearings[i].has_heavy_points))
+    if (press.presses && press.gives_way && loaded.marks[i] != 0)
       loaded.pressing.push_back({.object = bearings[i].object, .body = press.body});
   }
   std::sort(loaded.pressing.begin(), loaded.pressing.end());
@@ -257,11 +260,10 @@ void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tab
   mark_points(bearings, tables, loaded);
   keep_presses_of_loaded(bearings, tables, loaded);
   for (std::size_t i = 0; i < bearings.size(); ++i) {
-    if (loaded.marks[i] == 0 && !bearings[i].has_heavy_points) continue;
+    if (loaded.marks[i] == 0) continue;
     const state::Rows points = tables.objects[bearings[i].object].particles;
     loaded.loaded_at_points.resize(tables.objects.size(), 0);
-    if (bearings[i].has_heavy_points || loaded.marks[i] == kLoadedAtPoints)
-      loaded.loaded_at_points[bearings[i].object] = 1;
+    if (loaded.marks[i] == kLoadedAtPoints) loaded.loaded_at_points[bearings[i].object] = 1;
     loaded.cloths.push_back({.object = bearings[i].object,
                              .first = loaded.unsprung.size(),
                              .with_bends = bearings[i].bends_have_springs});

@@ -60,7 +60,8 @@ struct LoadedCloths {
 [[nodiscard]] std::vector<ClothBearing> find_bearings(const state::Tables& tables);
 
 /// Finds the cloths that are loaded by bodies which press on points, in this substep of length `h` [s], and
-/// which bodies these are. What is so fast that it would pass a link within the substep is not among them.
+/// which bodies these are. Not among them are bodies that would move by more than half a link within the
+/// substep, those hooked to the cloth, and what presses on tangled cloths or on those that hold gas.
 void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
                          LoadedCloths& loaded);
 
