@@ -33,8 +33,8 @@ inline constexpr const char* kSnag =
 inline constexpr KnownRoom kKnownRooms[] = {
     {2, test::Figure::kOverlap, 0.34, kThin},        {10, test::Figure::kOverlap, 0.662, kThin},
     {18, test::Figure::kEnergy, 0.0334, kLively},    {18, test::Figure::kRestOverlap, 0.2517, kLively},
-    {27, test::Figure::kEnergy, 0.017, kCloth},      {28, test::Figure::kGap, 0.5073, kCloth},
-    {28, test::Figure::kRestGap, 0.08, kCloth},      {33, test::Figure::kRestOverlap, 0.067, kLinks},
+    {27, test::Figure::kEnergy, 0.017, kCloth},      {28, test::Figure::kGap, 0.206, kCloth},
+    {28, test::Figure::kRestGap, 0.0586, kCloth},    {33, test::Figure::kRestOverlap, 0.067, kLinks},
     {35, test::Figure::kRopeStretch, 0.0225, kSnag}, {241, test::Figure::kOutside, 1, kPressed},
 };
 

@@ -340,17 +340,22 @@ class PassZones {
     const state::BodyMotion& start = f_.body_start[body];
     if (!is_finite(start.dx + moved) || !is_finite(start.theta_scaled + omega)) return;  // for quarantine
     state::MotionRecord& m = t_.bodies.motion[body];
+    // What contacts gave to the body stays theirs: they apply it again in the next substep.
+    state::FreeMotionRecord& free = t_.bodies.free_motion[body];
+    const Vec3 by_contacts = m.v - free.v;
+    const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
     m.dx = start.dx + moved;
     m.v = (Real(1) / h_) * moved;
     m.omega_scaled = math::inverse(t_.bodies.scale[body]) * omega;
     m.theta_scaled = start.theta_scaled + h_ * m.omega_scaled;
-    t_.bodies.free_motion[body].v = m.v;
-    t_.bodies.free_motion[body].omega_scaled = m.omega_scaled;
-    t_.bodies.angular_momentum[body] = math::inverse(t_.bodies.scale[body]) * m.omega_scaled;
+    free.v = m.v - by_contacts;
+    free.omega_scaled = m.omega_scaled - turn_by_contacts;
+    t_.bodies.angular_momentum[body] = math::inverse(t_.bodies.scale[body]) * free.omega_scaled;
     set_rotation(body, normalize(math::quaternion_of(h_ * omega) * begin_of(body).rotation));
     if (!state::is_gyroscopic_now(t_.bodies, body)) return;
     t_.bodies.angular_momentum[body] =
-        state::angular_momentum_of(t_.bodies.mass[body], t_.bodies.rotation[body], omega);
+        state::angular_momentum_of(t_.bodies.mass[body], t_.bodies.rotation[body], omega) -
+        math::inverse(t_.bodies.scale[body]) * turn_by_contacts;
   }
 
   /// Rotates a body to `now`, by its rotation vector since the step began where that is what rotates it.
