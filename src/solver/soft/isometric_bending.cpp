@@ -89,9 +89,9 @@ struct IsometricBend {
 };
 
 Spring load_spring(std::optional<std::uint32_t> row, const state::Springs& springs,
-                   IsometricBendBlocks& isometric_bends) {
+                   MaterialNumbers& materials) {
   if (!row) return {};
-  return {find_or_add_material(springs, *row, isometric_bends.materials), springs.rest_length[*row]};
+  return {materials.of(springs, *row), springs.rest_length[*row]};
 }
 
 void set_lane(const IsometricBend& isometric, const state::Bends& bends, std::size_t lane,
@@ -116,7 +116,7 @@ Real resistance(const state::Bends& bends, std::uint32_t row) {
 /// Isometric bends with their springs, in the order of the table.
 std::vector<IsometricBend> list_isometric_bends(std::span<const state::Deformable> objects,
                                                 const state::Bends& bends, const state::Springs& springs,
-                                                TakenRows& taken, IsometricBendBlocks& isometric_bends) {
+                                                TakenRows& taken, MaterialNumbers materials) {
   const SpringsByEnds by_ends(springs, rows_of(objects, &state::Deformable::springs),
                               rows_of(objects, &state::Deformable::particles));
   const std::uint32_t first_bend = rows_of(objects, &state::Deformable::bends).first;
@@ -137,8 +137,8 @@ std::vector<IsometricBend> list_isometric_bends(std::span<const state::Deformabl
       }
       list.push_back({.bend = row,
                       .object = object,
-                      .edge = load_spring(edge, springs, isometric_bends),
-                      .wings = load_spring(wings, springs, isometric_bends),
+                      .edge = load_spring(edge, springs, materials),
+                      .wings = load_spring(wings, springs, materials),
                       .damping = bends.damping[row],
                       .damped_mass = objects[object].springs.count > 0
                                          ? springs.damped_mass[objects[object].springs.first]
@@ -186,7 +186,8 @@ void build_isometric_bend_blocks(std::span<const state::Deformable> objects, con
   isometric_bends = {};
   isometric_bends.first_particle = rows_of(objects, &state::Deformable::particles).first;
   isometric_bends.materials.push_back({});  // kNoSpring
-  std::vector<IsometricBend> list = list_isometric_bends(objects, bends, springs, taken, isometric_bends);
+  std::vector<IsometricBend> list =
+      list_isometric_bends(objects, bends, springs, taken, MaterialNumbers(isometric_bends.materials));
   sort_isometric_bends(bends, isometric_bends.materials.size(), list);
 
   std::size_t i = 0;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace hooke::solver {
 
@@ -36,8 +37,8 @@ struct Source {
 };
 
 /// Colors one class: rows of a color share no particle. Returns them in the order of passes.
-std::vector<Place> color_class(const Source& source, SpringClass kind,
-                               std::vector<SpringMaterial>& materials) {
+std::vector<Place> color_class(const Source& source, SpringClass kind, MaterialNumbers& materials,
+                               const std::vector<SpringMaterial>& list) {
   const state::Springs& springs = source.springs;
   std::vector<Place> places;
   std::vector<std::uint64_t> used(source.points.count, 0);
@@ -53,10 +54,10 @@ std::vector<Place> color_class(const Source& source, SpringClass kind,
     if (anchored && source.particles.velocity[anchor].inverse_mass > Real(0)) continue;
     int color = take_color(used, ends, anchored ? 1 : 2);
     if (color >= 64) color = lone_color++;
-    const std::uint32_t material = find_or_add_material(springs, row, materials);
+    const std::uint32_t material = materials.of(springs, row);
     places.push_back({kind, color, material, row});
   }
-  base::counting_sort(places, materials.size(), [](const Place& place) { return place.material; });
+  base::counting_sort(places, list.size(), [](const Place& place) { return place.material; });
   base::counting_sort(places, static_cast<std::size_t>(lone_color),
                       [](const Place& place) { return place.color; });
   return places;
@@ -86,14 +87,24 @@ SpringMaterial material_of_spring(const state::Springs& springs, std::size_t row
           .gamma = Real(0)};
 }
 
-std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
-                                   std::vector<SpringMaterial>& materials) {
+MaterialNumbers::MaterialNumbers(std::vector<SpringMaterial>& materials) : materials_(materials) {
+  for (std::uint32_t i = 0; i < materials.size(); ++i) numbers_[materials[i]] = i;
+}
+
+bool MaterialNumbers::IsLess::operator()(const SpringMaterial& a, const SpringMaterial& b) const {
+  const auto key = [](const SpringMaterial& m) {
+    return std::tuple(m.stiffness, m.damping, m.damped_mass, m.one_sided, m.anchored, m.form);
+  };
+  return key(a) < key(b);
+}
+
+std::uint32_t MaterialNumbers::of(const state::Springs& springs, std::size_t row) {
   const SpringMaterial material = material_of_spring(springs, row);
-  const auto found = std::find(materials.rbegin(), materials.rend(), material);
-  if (found != materials.rend())
-    return static_cast<std::uint32_t>(std::distance(found, materials.rend()) - 1);
-  materials.push_back(material);
-  return static_cast<std::uint32_t>(materials.size() - 1);
+  if (last_ < materials_.size() && materials_[last_] == material) return last_;
+  const auto [number, is_new] = numbers_.try_emplace(material, static_cast<std::uint32_t>(materials_.size()));
+  if (is_new) materials_.push_back(material);
+  last_ = number->second;
+  return last_;
 }
 
 void build_spring_blocks(std::span<const state::Deformable> objects, const state::Springs& springs,
@@ -104,11 +115,12 @@ void build_spring_blocks(std::span<const state::Deformable> objects, const state
   HOOKE_ASSERT(taken.empty() || taken.size() == source.rows.count);
   blocks = {};
   blocks.first_particle = source.points.first;
+  MaterialNumbers materials(blocks.materials);
   std::vector<Place> places;
   places.reserve(source.rows.count);
   for (const SpringClass kind : {SpringClass::kStretch, SpringClass::kShear, SpringClass::kBend,
                                  SpringClass::kTether, SpringClass::kLimit}) {
-    const std::vector<Place> of_class = color_class(source, kind, blocks.materials);
+    const std::vector<Place> of_class = color_class(source, kind, materials, blocks.materials);
     places.insert(places.end(), of_class.begin(), of_class.end());
   }
 

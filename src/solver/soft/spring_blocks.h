@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -85,9 +86,23 @@ void build_spring_blocks(std::span<const state::Deformable> objects, const state
 /// The material of a row, without its coefficients.
 [[nodiscard]] SpringMaterial material_of_spring(const state::Springs& springs, std::size_t row);
 
-/// The material of a row, as its index in the list.
-std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
-                                   std::vector<SpringMaterial>& materials);
+/// Gives springs the numbers of their materials in a list, to which it adds new ones. Torn cloth has one for
+/// nearly each spring along its cracks.
+class MaterialNumbers {
+ public:
+  explicit MaterialNumbers(std::vector<SpringMaterial>& materials);
+
+  [[nodiscard]] std::uint32_t of(const state::Springs& springs, std::size_t row);
+
+ private:
+  struct IsLess {
+    bool operator()(const SpringMaterial& a, const SpringMaterial& b) const;
+  };
+
+  std::vector<SpringMaterial>& materials_;
+  std::map<SpringMaterial, std::uint32_t, IsLess> numbers_;
+  std::uint32_t last_ = 0;  ///< Most springs are like the one before.
+};
 
 /// Largest c of a damper beside a spring k that counts in one pass over a sheet of points of a mass: m / 2 h
 /// or 10 h k, whichever is more. See solver/soft/spring_solve.h. Of 1000 random sheets 8 pass any speed

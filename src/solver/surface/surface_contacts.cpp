@@ -17,13 +17,19 @@ std::size_t vertex_count(const SurfaceContacts& contacts, const SurfaceGroup& gr
   return count;
 }
 
+bool has_surface(const state::Deformable& object) {
+  if (object.kind == PointRef::Kind::kRope) return object.touches_surfaces;
+  return object.surface.rest_points && object.triangles.count + object.tetrahedra.count > 0;
+}
+
 /// Whether some surface may touch another, or itself.
-bool may_touch(const state::Tables& t, const SurfaceMeshes& surfaces) {
+bool may_touch(const state::Tables& t) {
   const auto count = [&](auto condition) {
-    return std::count_if(surfaces.meshes.begin(), surfaces.meshes.end(),
-                         [&](const SurfaceMesh& mesh) { return condition(t.objects[mesh.object]); });
+    return std::count_if(t.objects.begin(), t.objects.end(), [&](const state::Deformable& object) {
+      return has_surface(object) && condition(object);
+    });
   };
-  const auto all = static_cast<std::ptrdiff_t>(surfaces.meshes.size());
+  const auto all = count([](const state::Deformable&) { return true; });
   const bool any_pair =
       all > 1 && count([](const state::Deformable& object) { return object.touches_ropes; }) < all &&
       count([](const state::Deformable& object) { return object.repulsion_strength > Real(0); }) < all;
@@ -80,18 +86,22 @@ void note_crossings(const SurfaceContacts& contacts, state::Tables& tables) {
 }  // namespace
 
 void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContacts& contacts) {
+  contacts.active = may_touch(tables);
+  contacts.substeps_left = substeps;
+  if (!contacts.active) {
+    contacts.live_groups = 0;
+    return;
+  }
   const bool changed = refresh_surfaces(tables, contacts.surfaces);
-  contacts.active = may_touch(tables, contacts.surfaces);
   contacts.for_groups([](SurfaceGroup& group) {
     group.known = false;
     group.counts = {};
   });
   contacts.regroup = true;
-  contacts.substeps_left = substeps;
   contacts.may_cross.resize(contacts.surfaces.meshes.size());
   for (std::size_t i = 0; i < contacts.may_cross.size(); ++i)
     contacts.may_cross[i] = tables.objects[contacts.surfaces.meshes[i].object].surface.may_cross ? 1 : 0;
-  if (!changed || !contacts.active) return;
+  if (!changed) return;
   contacts.any_rope = std::any_of(contacts.surfaces.meshes.begin(), contacts.surfaces.meshes.end(),
                                   [](const SurfaceMesh& mesh) { return mesh.is_rope(); });
   const std::size_t count = contacts.surfaces.particle.size();

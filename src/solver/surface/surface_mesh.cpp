@@ -2,11 +2,13 @@
 
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
+#include "base/lists_by_key.h"
 #include "geometry/triangle_mesh.h"
 #include "solver/surface/surface_tree.h"
 #include "state/surface_triangles.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace hooke::solver {
 
@@ -120,18 +122,26 @@ class MeshBuilder {
  private:
   /// Gives each of `count` parts to the cell of its triangles that has the fewest so far.
   template <class TrianglesAt>
-  std::vector<std::vector<std::uint32_t>> share_out(std::size_t count, TrianglesAt triangles_at) {
-    std::vector<std::vector<std::uint32_t>> owned(pairs_.size());
+  base::ListsByKey<std::uint32_t> share_out(std::size_t count, TrianglesAt triangles_at) {
+    std::vector<std::uint32_t> cell_of_part(count, kNone);
+    std::vector<std::uint32_t> owned(pairs_.size(), 0);
     for (std::uint32_t i = 0; i < count; ++i) {
       std::uint32_t best = kNone;
       for (const std::uint32_t triangle : triangles_at(i)) {
         const std::uint32_t cell = triangle == kNone ? kNone : cell_of_[triangle];
         if (cell == kNone) continue;
-        if (best == kNone || owned[cell].size() < owned[best].size()) best = cell;
+        if (best == kNone || owned[cell] < owned[best]) best = cell;
       }
-      if (best != kNone) owned[best].push_back(i);
+      cell_of_part[i] = best;
+      if (best != kNone) ++owned[best];
     }
-    return owned;
+    base::ListsByKey<std::uint32_t> parts;
+    parts.fill(pairs_.size(), [&](auto visit) {
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (cell_of_part[i] != kNone) visit(cell_of_part[i], i);
+      }
+    });
+    return parts;
   }
 
   void add_features(SurfaceMesh& mesh) {
@@ -144,8 +154,9 @@ class MeshBuilder {
     const auto size = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
     for (std::uint32_t cell = 0; cell < pairs_.size(); ++cell) {
       SurfaceCell rows = {size(mesh.vertices), 0, size(mesh.edges), 0, size(mesh.triangles), 0};
-      for (const std::uint32_t vertex : vertices[cell]) mesh.vertices.push_back(mesh.first_vertex + vertex);
-      for (const std::uint32_t edge : edges[cell]) {
+      for (const std::uint32_t vertex : vertices.of(cell))
+        mesh.vertices.push_back(mesh.first_vertex + vertex);
+      for (const std::uint32_t edge : edges.of(cell)) {
         edge_row[edge] = size(mesh.edges);
         mesh.edges.push_back(edge_at(edge, mesh.first_vertex));
       }
@@ -199,13 +210,18 @@ class MeshBuilder {
   }
 
   void add_neighbors(SurfaceMesh& mesh) const {
-    std::vector<std::vector<std::uint32_t>> lists(vertex_count_);
-    for (const auto& [a, b] : topology_.edges) {
-      lists[a].push_back(mesh.first_vertex + b);
-      lists[b].push_back(mesh.first_vertex + a);
-    }
-    for (const std::vector<std::uint32_t>& list : lists) {
+    base::ListsByKey<std::uint32_t> lists;
+    lists.fill(vertex_count_, [&](auto visit) {
+      for (const auto& [a, b] : topology_.edges) {
+        visit(a, mesh.first_vertex + b);
+        visit(b, mesh.first_vertex + a);
+      }
+    });
+    mesh.neighbor_begin.reserve(vertex_count_ + std::size_t{1});
+    mesh.neighbors.reserve(2 * topology_.edges.size());
+    for (std::uint32_t vertex = 0; vertex < vertex_count_; ++vertex) {
       mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
+      const std::span<const std::uint32_t> list = lists.of(vertex);
       mesh.neighbors.insert(mesh.neighbors.end(), list.begin(), list.end());
     }
     mesh.neighbor_begin.push_back(static_cast<std::uint32_t>(mesh.neighbors.size()));
@@ -299,6 +315,8 @@ void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfa
   };
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();
   mesh.object = row;
+  mesh.revision = t.objects[row].revision;
+  mesh.first_particle = t.objects[row].particles.first;
   mesh.first_vertex = static_cast<std::uint32_t>(surfaces.particle.size());
   mesh.vertex_count = segments + 1;
   std::vector<Vec3> centers;
@@ -329,6 +347,57 @@ void append_rope(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfa
   make_parts(mesh);
 }
 
+/// Numbers the vertices of a mesh from `first` on.
+void renumber(std::uint32_t first, SurfaceMesh& mesh) {
+  const std::uint32_t change = first - mesh.first_vertex;  // It may wrap.
+  mesh.first_vertex = first;
+  if (change == 0) return;
+  for (std::uint32_t& vertex : mesh.vertices) vertex += change;
+  for (std::uint32_t& vertex : mesh.neighbors) vertex += change;
+  for (SurfaceEdge& edge : mesh.edges) {
+    for (std::uint32_t& vertex : edge.vertex) vertex += change;
+    for (std::uint32_t& vertex : edge.opposite) vertex += vertex == SurfaceEdge::kNone ? 0 : change;
+  }
+  for (SurfaceTriangle& triangle : mesh.triangles) {
+    for (std::uint32_t& vertex : triangle.vertex) vertex += change;
+  }
+}
+
+/// Surfaces of the step before, from which those of unchanged objects are taken.
+class SurfacesBefore {
+ public:
+  explicit SurfacesBefore(SurfaceMeshes& surfaces)
+      : meshes_(std::move(surfaces.meshes)), particle_(std::move(surfaces.particle)) {
+    surfaces.meshes.clear();
+    surfaces.particle.clear();
+    surfaces.mesh_of.clear();
+    for (std::uint32_t i = 0; i < meshes_.size(); ++i) by_revision_.emplace_back(meshes_[i].revision, i);
+    std::sort(by_revision_.begin(), by_revision_.end());
+  }
+
+  /// Appends the surface of an object as it was. Returns false if that has changed.
+  bool take(const state::Tables& t, std::uint32_t row, SurfaceMeshes& surfaces) {
+    const std::pair key{t.objects[row].revision, std::uint32_t{0}};
+    const auto known = std::lower_bound(by_revision_.begin(), by_revision_.end(), key);
+    if (known == by_revision_.end() || known->first != key.first) return false;
+    SurfaceMesh& mesh = meshes_[known->second];
+    const auto vertices = std::span(particle_).subspan(mesh.first_vertex, mesh.vertex_count);
+    const std::uint32_t change = t.objects[row].particles.first - mesh.first_particle;  // It may wrap.
+    renumber(static_cast<std::uint32_t>(surfaces.particle.size()), mesh);
+    mesh.object = row;
+    mesh.first_particle += change;
+    for (const std::uint32_t particle : vertices) surfaces.particle.push_back(particle + change);
+    surfaces.meshes.push_back(std::move(mesh));
+    surfaces.mesh_of.resize(surfaces.particle.size(), static_cast<std::uint32_t>(surfaces.meshes.size() - 1));
+    return true;
+  }
+
+ private:
+  std::vector<SurfaceMesh> meshes_;
+  std::vector<std::uint32_t> particle_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> by_revision_;
+};
+
 /// Appends the surface of an object; `vertex_of` is scratch memory by particle, full of kNone.
 void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::uint32_t>& vertex_of,
                     SurfaceMeshes& surfaces) {
@@ -340,6 +409,8 @@ void append_surface(const state::Tables& t, std::uint32_t row, std::vector<std::
   if (triangles.empty() || !t.objects[row].surface.rest_points) return;
   SurfaceMesh& mesh = surfaces.meshes.emplace_back();
   mesh.object = row;
+  mesh.revision = t.objects[row].revision;
+  mesh.first_particle = t.objects[row].particles.first;
   mesh.first_vertex = static_cast<std::uint32_t>(surfaces.particle.size());
   for (const Triangle& triangle : triangles) {
     for (const std::uint32_t particle : triangle) vertex_of[particle] = 0;
@@ -428,11 +499,10 @@ bool refresh_surfaces(const state::Tables& tables, SurfaceMeshes& surfaces) {
   surfaces.hook_revision = tables.hook_revision;
   std::vector<std::uint32_t> vertex_of(tables.particles.position.size(), kNone);
   if (stale) {
-    surfaces.meshes.clear();
-    surfaces.particle.clear();
-    surfaces.mesh_of.clear();
-    for (std::uint32_t row = 0; row < tables.objects.size(); ++row)
-      append_surface(tables, row, vertex_of, surfaces);
+    SurfacesBefore before(surfaces);
+    for (std::uint32_t row = 0; row < tables.objects.size(); ++row) {
+      if (!before.take(tables, row, surfaces)) append_surface(tables, row, vertex_of, surfaces);
+    }
   }
   for (std::uint32_t i = 0; i < surfaces.particle.size(); ++i) vertex_of[surfaces.particle[i]] = i;
   join_hooked(tables, vertex_of, surfaces);

@@ -69,7 +69,9 @@ struct SurfaceEdge {
 
 /// The surface of one object. Vertices are numbered through all surfaces, other parts within their surface.
 struct SurfaceMesh {
-  std::uint32_t object = 0;  ///< Row of the deformable.
+  std::uint32_t object = 0;          ///< Row of the deformable.
+  std::uint64_t revision = 0;        ///< Deformable::revision that this was made from.
+  std::uint32_t first_particle = 0;  ///< Of the deformable.
   std::uint32_t first_vertex = 0;
   std::uint32_t vertex_count = 0;
   std::vector<std::uint32_t> vertices;  ///< In the order of cells.
@@ -108,7 +110,8 @@ struct SurfaceMeshes {
   [[nodiscard]] std::uint32_t object_of(std::uint32_t vertex) const { return meshes[mesh_of[vertex]].object; }
 };
 
-/// Makes the surfaces anew if rows have changed, and what hooks join. Returns whether it made surfaces.
+/// Makes the surfaces anew of objects whose rows have changed, moves the others to where their objects are
+/// now, and finds what hooks join. Returns whether any surface was made, came, went or was moved.
 bool refresh_surfaces(const state::Tables& tables, SurfaceMeshes& surfaces);
 
 }  // namespace hooke::solver

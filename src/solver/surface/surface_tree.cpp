@@ -39,10 +39,11 @@ std::vector<SurfaceNode> build_surface_tree(std::span<const Vec3> centers) {
   const auto split = [&](Part part) {
     const auto set = std::span(cells).subspan(part.first, part.count());
     const int axis = longest_axis(centers, set);
-    std::sort(set.begin(), set.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return std::pair(coordinate(centers[a], axis), a) < std::pair(coordinate(centers[b], axis), b);
-    });
     const std::uint32_t middle = part.first + (part.count() + 1) / 2;
+    std::nth_element(
+        set.begin(), set.begin() + (middle - part.first), set.end(), [&](std::uint32_t a, std::uint32_t b) {
+          return std::pair(coordinate(centers[a], axis), a) < std::pair(coordinate(centers[b], axis), b);
+        });
     return std::pair(Part{part.first, middle}, Part{middle, part.end});
   };
   std::vector<SurfaceNode> nodes(1);
