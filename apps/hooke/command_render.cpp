@@ -2,6 +2,7 @@
 #include "hooke/compare/stage.h"
 #include "hooke/drawing/drawing_style.h"
 #include "hooke/drawing/scene_drawing.h"
+#include "hooke/drawing/shown_insight.h"
 #include "hooke/progress.h"
 
 #include "render/renderer.h"
@@ -28,6 +29,7 @@ struct RenderOptions {
   std::optional<double> at;
   std::optional<double> trail;  ///< [s]
   StyleWords style;
+  std::vector<std::string> show;
   std::string stepper;  ///< Method of the laboratory; empty for the solver.
   bool force = false;
   SceneOverrides overrides;
@@ -48,6 +50,7 @@ void describe(CLI::App& app, RenderOptions& options) {
   add_number(app, "--trail", options.trail, 1e-6, 1e6,
              "Leave ropes and particles in the picture as they were every so many seconds");
   add_style(app, options.style);
+  add_show(app, options.show);
   CLI::Option* stepper =
       app.add_option("--stepper", options.stepper, "Draw the laboratory's run; see hooke compare --help");
   app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
@@ -61,7 +64,8 @@ void describe(CLI::App& app, RenderOptions& options) {
       "  hooke render scenes/rope.json -o rope_%04d.png --seconds 0.2 --size 320x180\n"
       "  hooke render scenes/paper/fig2.json -o fig2.png --stepper euler --force --trail 0.016 --at 0.3\n"
       "  hooke render scenes/paper/fig7.json -o fig7.png --bounds sphere,box,oriented_box,oriented_box_tree\n"
-      "  hooke render scenes/paper/bsp_walk.json -o walk.png --at 1 --painter");
+      "  hooke render scenes/paper/bsp_walk.json -o walk.png --at 1 --painter\n"
+      "  hooke render scenes/rope_bridge.json -o loads.png --show loads,contacts");
 }
 
 bool read_size(RenderOptions& options) {
@@ -79,11 +83,12 @@ bool ends_in(const std::string& text, const std::string& ending) {
 class Film {
  public:
   Film(Simulation simulation, std::optional<lab::Run> run, render::Renderer renderer,
-       std::optional<double> trail, DrawingStyle style)
+       std::optional<double> trail, SceneDrawing drawing, const InsightWish& wish)
       : simulation_(std::move(simulation)),
         run_(std::move(run)),
         renderer_(std::move(renderer)),
-        drawing_(std::move(style)) {
+        drawing_(std::move(drawing)),
+        insight_(wish) {
     if (trail) drawing_.keep_trail(*trail);
     has_trail_ = trail.has_value();
     drawing_.record(simulation_);
@@ -103,6 +108,7 @@ class Film {
     }
     render::DrawList list;
     drawing_.fill(time, renderer_.height(), list);
+    insight_.add(simulation_.world(), drawing_.origin(), renderer_.width(), renderer_.height(), list);
     for (const std::string& line : drawing_.take_warnings()) {
       std::fprintf(stderr, "warning: %s\n", line.c_str());
     }
@@ -134,6 +140,7 @@ class Film {
   std::optional<lab::Run> run_;
   render::Renderer renderer_;
   SceneDrawing drawing_;
+  ShownInsight insight_;
   std::uint64_t steps_ = 0;
   bool has_trail_ = false;
   bool gone_ = false;
@@ -190,6 +197,8 @@ int command_render(Arguments arguments) {
 
   auto style = style_of(options.style);
   if (!style) return report(style.error());
+  const auto wish = wish_of(options.show);
+  if (!wish) return report(wish.error());
   auto scene = read_scene(options.scene);
   if (!scene) return kBadInput;
   apply(options.overrides, scene->world);
@@ -205,7 +214,7 @@ int command_render(Arguments arguments) {
     run.emplace(std::move(created).value());
   }
   Film film(std::move(*simulation), std::move(run), std::move(renderer).value(), options.trail,
-            std::move(style).value());
+            SceneDrawing(std::move(style).value()), wish.value());
   const auto done = single ? render_picture(film, options) : render_film(film, options);
   if (!done) return report(done.error());
   std::printf("%s\n", options.output.c_str());

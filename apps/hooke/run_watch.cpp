@@ -75,6 +75,11 @@ constexpr std::array kRefusedCounts = {
         "they should",
         "fewer points, a load that is not as heavy, or more particle_substeps"},
     RefusedCount{
+        &StepReport::cloths_left_to_contacts, "cloths_left_to_contacts",
+        "times cloths bore heavy bodies by contacts alone, as these came fast, or the cloths were tangled or "
+        "hold gas: they stretch more than they should",
+        "slower bodies, more substeps, or coarser cloth"},
+    RefusedCount{
         &StepReport::points_held_back, "points_held_back",
         "times points were held back for a substep: surfaces jam, and only that keeps them from crossing",
         "slower motion, stiffer or finer cloth, a smaller thickness, or more substeps"},

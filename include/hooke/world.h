@@ -179,6 +179,10 @@ struct StepReport {
   /// Times that a cloth under a load used up its work before it was solved to the end: it stretches more than
   /// it should.
   std::uint32_t cloths_unconverged = 0;
+  /// Particle substeps in which a body too heavy for the springs of a cloth pressed on its points and was not
+  /// solved with it: it moved by more than half a link, or the cloth was tangled or holds gas. Contacts alone
+  /// bear it then, and the cloth stretches more than it should. Each cloth counts by itself.
+  std::uint32_t cloths_left_to_contacts = 0;
   /// Times that a point of a cloth or a solid was held back for a particle substep, because nothing else kept
   /// surfaces from crossing: they jam there. Points and bodies count, too, that went on as one because
   /// nothing else kept the body from passing.

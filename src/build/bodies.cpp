@@ -99,7 +99,7 @@ Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t)
   std::vector<std::shared_ptr<const geometry::ConvexHull>> parts;
   const MeshDesc& solid = t.meshes[row]->desc;
   geometry::Box bounds;
-  for (const Vec3 p : solid.positions) bounds = merge(bounds, geometry::Box{p, p});
+  for (const Vec3 p : solid.positions) bounds = merge(bounds, p);
   const Real concavity = kConcavity * length(bounds.upper - bounds.lower);
   Result<std::vector<MeshDesc>> pieces = decompose_convex(solid, concavity, kMostParts);
   if (!pieces) {

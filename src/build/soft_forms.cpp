@@ -91,7 +91,7 @@ Result<MeshDesc> surface_of_shape(const Shape& shape, const state::Tables& t) {
 
 double longest_side(const MeshDesc& surface) {
   geometry::Box box;
-  for (const Vec3& p : surface.positions) box = merge(box, geometry::Box{p, p});
+  for (const Vec3& p : surface.positions) box = merge(box, p);
   const DVec3 size = vector_cast<double>(box.upper - box.lower);
   return std::max({size.x, size.y, size.z});
 }

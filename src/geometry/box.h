@@ -32,6 +32,11 @@ template <class T>
 constexpr Box3<T> merge(const Box3<T>& a, const Box3<T>& b) {
   return {min_of(a.lower, b.lower), max_of(a.upper, b.upper)};
 }
+/// The smallest box around a box and a point.
+template <class T>
+constexpr Box3<T> merge(const Box3<T>& box, Vector3<T> point) {
+  return {min_of(box.lower, point), max_of(box.upper, point)};
+}
 template <class T>
 constexpr Box3<T> box_of(Vector3<T> a, Vector3<T> b, Vector3<T> c) {
   return {min_of(a, min_of(b, c)), max_of(a, max_of(b, c))};

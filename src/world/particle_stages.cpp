@@ -326,7 +326,8 @@ void solve_yarns(WorldData& world) {
 }
 
 void find_pressed_cloths(WorldData& world, Real h) {
-  solver::find_pressed_cloths(world.derived.cloth_bearings, world.tables, h, world.frame.loaded_cloths);
+  world.frame.cloths_left_to_contacts +=
+      solver::find_pressed_cloths(world.derived.cloth_bearings, world.tables, h, world.frame.loaded_cloths);
 }
 
 void find_loaded_cloths(WorldData& world) {

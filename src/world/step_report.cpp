@@ -41,6 +41,7 @@ void count_refused(WorldData& world, StepReport& report) {
   report.points_held_back += std::exchange(world.frame.passes_held_back, 0);
   report.surfaces_touching += std::exchange(world.frame.passes_left, 0);
   report.cloths_unconverged = std::exchange(world.frame.cloths_unconverged, 0);
+  report.cloths_left_to_contacts = std::exchange(world.frame.cloths_left_to_contacts, 0);
   for (solver::SoftGroup& group : world.derived.soft.groups)
     report.solids_unconverged += std::exchange(group.tetrahedra.stiff.unconverged, false) ? 1 : 0;
 }

@@ -183,10 +183,11 @@ struct Frame {
   std::vector<solver::PassMass> pass_masses;         ///< Valid for one particle substep.
   solver::LoadedCloths loaded_cloths;                ///< Valid for one particle substep.
   std::uint32_t cloths_unconverged = 0;  ///< Solutions of these that did not come to an end in this step.
-  std::uint32_t passes_held_back = 0;    ///< Points and bodies that hold_back_passes has moved in this step.
-  std::uint32_t passes_left = 0;         ///< Elements that shapes have come through all the same.
-  solver::SurfaceContacts surfaces;      ///< Contacts of deformables with each other.
-  solver::JoinedSolids joined_solids;    ///< Stiff solids that are solved together.
+  std::uint32_t cloths_left_to_contacts = 0;  ///< Times in this step that bodies were not solved with one.
+  std::uint32_t passes_held_back = 0;  ///< Points and bodies that hold_back_passes has moved in this step.
+  std::uint32_t passes_left = 0;       ///< Elements that shapes have come through all the same.
+  solver::SurfaceContacts surfaces;    ///< Contacts of deformables with each other.
+  solver::JoinedSolids joined_solids;  ///< Stiff solids that are solved together.
   solver::Repulsion repulsion;
   std::vector<state::VelocityRecord> velocity_before;  ///< Velocities of rope nodes before forces act.
   std::vector<solver::AirRecord> wind;                 ///< Velocity of the air at each particle [m/s].

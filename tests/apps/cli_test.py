@@ -754,6 +754,19 @@ class Render(Program):
         _, err = self.hooke("render", *words, "-o", "x.png", "--bounds", "cube", code=2)
         self.assert_one_line(err, "no bounding volume is called 'cube'")
 
+    def test_what_the_engine_knows_is_shown_in_pictures(self):
+        words = ("scenes/rope.json", "--at", 0.5, "--size", "320x180")
+        self.draw(*words, "-o", "plain.png")
+        pictures = {(self.folder / "plain.png").read_bytes()}
+        for shown in ("loads", "loads,numbers", "velocities", "boxes"):
+            self.draw(*words, "-o", "x.png", "--show", shown)
+            pictures.add((self.folder / "x.png").read_bytes())
+        self.assertEqual(len(pictures), 5)
+        _, err = self.hooke("render", *words, "-o", "x.png", "--show", "forces", code=2)
+        self.assert_one_line(err, "'forces' is none of contacts, velocities, boxes, loads")
+        _, err = self.hooke("render", *words, "-o", "x.png", "--show", "numbers", code=2)
+        self.assert_one_line(err, "add that, too")
+
     def test_without_ffmpeg_a_film_is_refused_and_leaves_nothing(self):
         self.draw("scenes/rope.json", "-o", "x.png", "--at", 0, "--size", "16x16")
         (self.folder / "x.png").unlink()

@@ -305,6 +305,22 @@ TEST_SUITE("world/loaded_cloths") {
     }
     CHECK(unconverged > 0);
   }
+
+  TEST_CASE("a heavy body that comes too fast to be solved with its cloth is counted, and no slow one is") {
+    for (const Real speed : {Real(0), Real(30)}) {
+      World world = make_world({});
+      take(world.add_cloth(net()));
+      take(world.add_body({.kind = BodyKind::kDynamic,
+                           .shape = Shape::sphere(Real(0.1)),
+                           .position = {0, 1.65, 0},
+                           .velocity = {0, -speed, 0},
+                           .mass = 4}));
+      std::uint32_t left = 0;
+      for (int i = 0; i < 30; ++i) left += world.step(Real(1) / Real(60)).cloths_left_to_contacts;
+      CAPTURE(speed);
+      CHECK((left > 0) == (speed > 0));
+    }
+  }
 }
 
 }  // namespace hooke

@@ -7,6 +7,12 @@ namespace hooke::app {
 
 namespace {
 
+constexpr InsightChoice kChoices[] = {
+    {"contacts", &DebugDrawDesc::contacts}, {"velocities", &DebugDrawDesc::velocities},
+    {"boxes", &DebugDrawDesc::bounds},      {"loads", &DebugDrawDesc::loads},
+    {"hooks", &DebugDrawDesc::hooks},       {"sleep", &DebugDrawDesc::sleep},
+    {"routes", &DebugDrawDesc::routes},     {"numbers", &DebugDrawDesc::texts}};
+
 /// The time in which a largest value fades to the half [s].
 constexpr double kFading = 2;
 constexpr double kAxisShare = 0.25;  ///< Length of axes and normals over that of the largest force's arrow.
@@ -39,6 +45,10 @@ auto choices_of(const DebugDrawDesc& desc) {
 }
 
 }  // namespace
+
+std::span<const InsightChoice> insight_choices() {
+  return kChoices;
+}
 
 bool operator==(const InsightWish& a, const InsightWish& b) {
   return choices_of(a.desc) == choices_of(b.desc) && a.arrow == b.arrow;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,15 @@ struct InsightWish {
   /// Whether anything is.
   [[nodiscard]] bool any() const;
 };
+
+/// One of the subjects that can be shown besides objects.
+struct InsightChoice {
+  const char* name;
+  bool DebugDrawDesc::*shown;
+};
+
+/// All of them, in the order of their keys in the window.
+[[nodiscard]] std::span<const InsightChoice> insight_choices();
 
 /// A debug picture as plain data, free of the world. Places are in the world [m].
 struct Insight {

@@ -65,12 +65,11 @@ void build_legend(const DebugDrawDesc& shown, const Insight& insight) {
 
 void build_insight(const SessionView& view, ViewInput& input, WidgetBoxes& boxes) {
   if (!ImGui::CollapsingHeader("insight (keys 1 to 8)", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  int column = 0;
-  for (const ViewInput::InsightChoice& choice : ViewInput::insight_choices()) {
-    if (column > 0) ImGui::SameLine(static_cast<float>(column) * 7.2F * ImGui::GetFontSize());
-    column = (column + 1) % 3;
+  for (std::size_t i = 0; i < insight_choices().size(); ++i) {
+    const InsightChoice& choice = insight_choices()[i];
+    if (i % 3 > 0) ImGui::SameLine(static_cast<float>(i % 3) * 7.2F * ImGui::GetFontSize());
     bool shown = input.insight().*choice.shown;
-    if (ImGui::Checkbox(choice.name, &shown)) input.key(choice.key);
+    if (ImGui::Checkbox(choice.name, &shown)) input.key(ViewInput::insight_key(i));
     note_box(boxes, std::string("show ") + choice.name);
   }
   if (view.insight) build_legend(input.insight(), *view.insight);

@@ -53,16 +53,11 @@ constexpr ViewInput::KeyHelp kHelp[] = {
     {"Escape", "closes this page, or the window"},
 };
 
-/// In the order of their keys.
-constexpr ViewInput::InsightChoice kInsight[] = {
-    {"contacts", ViewInput::Key::kContacts, &DebugDrawDesc::contacts},
-    {"velocities", ViewInput::Key::kVelocities, &DebugDrawDesc::velocities},
-    {"boxes", ViewInput::Key::kBounds, &DebugDrawDesc::bounds},
-    {"loads", ViewInput::Key::kLoads, &DebugDrawDesc::loads},
-    {"hooks", ViewInput::Key::kHooks, &DebugDrawDesc::hooks},
-    {"sleep", ViewInput::Key::kSleep, &DebugDrawDesc::sleep},
-    {"routes", ViewInput::Key::kRoutes, &DebugDrawDesc::routes},
-    {"numbers", ViewInput::Key::kNumbers, &DebugDrawDesc::texts}};
+/// By subject of insight_choices().
+constexpr ViewInput::Key kInsightKeys[] = {ViewInput::Key::kContacts, ViewInput::Key::kVelocities,
+                                           ViewInput::Key::kBounds,   ViewInput::Key::kLoads,
+                                           ViewInput::Key::kHooks,    ViewInput::Key::kSleep,
+                                           ViewInput::Key::kRoutes,   ViewInput::Key::kNumbers};
 
 }  // namespace
 
@@ -201,11 +196,10 @@ void ViewInput::key(Key key) {
   }
 }
 
-bool ViewInput::insight_key(Key key) {
-  const auto* const found = std::find_if(std::begin(kInsight), std::end(kInsight),
-                                         [&](const InsightChoice& one) { return one.key == key; });
-  if (found == std::end(kInsight)) return false;
-  bool& chosen = insight_.desc.*found->shown;
+bool ViewInput::toggle_insight(Key key) {
+  const auto* const found = std::find(std::begin(kInsightKeys), std::end(kInsightKeys), key);
+  if (found == std::end(kInsightKeys)) return false;
+  bool& chosen = insight_.desc.*insight_choices()[static_cast<std::size_t>(found - kInsightKeys)].shown;
   chosen = !chosen;
   insight_.arrow = kArrowShare * static_cast<double>(camera_.distance);
   post(ShowInsight{insight_});
@@ -213,7 +207,7 @@ bool ViewInput::insight_key(Key key) {
 }
 
 void ViewInput::window_key(Key key) {
-  if (insight_key(key)) return;
+  if (toggle_insight(key)) return;
   switch (key) {
     case Key::kRedo:
       return post(Redo{});
@@ -240,8 +234,8 @@ void ViewInput::window_key(Key key) {
   }
 }
 
-std::span<const ViewInput::InsightChoice> ViewInput::insight_choices() {
-  return kInsight;
+ViewInput::Key ViewInput::insight_key(std::size_t choice) {
+  return kInsightKeys[choice];
 }
 
 std::string_view ViewInput::hint() const {

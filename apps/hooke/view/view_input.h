@@ -52,12 +52,6 @@ class ViewInput {
     kHelp,   ///< Shows and hides the page of keys.
     kClose,  ///< Hides the page of keys, or closes the window.
   };
-  /// One of the subjects that can be shown besides objects, and its key.
-  struct InsightChoice {
-    const char* name;
-    Key key;
-    bool DebugDrawDesc::*shown;
-  };
   /// One key of the page of keys.
   struct KeyHelp {
     const char* keys;
@@ -83,8 +77,8 @@ class ViewInput {
   [[nodiscard]] std::optional<std::array<std::array<double, 2>, 2>> cut_line() const;
   [[nodiscard]] bool shows_help() const { return shows_help_; }
   [[nodiscard]] bool shows_inspector() const { return shows_inspector_; }
-  /// All subjects that can be shown besides objects.
-  [[nodiscard]] static std::span<const InsightChoice> insight_choices();
+  /// The key of a subject of insight_choices().
+  [[nodiscard]] static Key insight_key(std::size_t choice);
   /// What is shown besides objects.
   [[nodiscard]] const DebugDrawDesc& insight() const { return insight_.desc; }
   /// Size of the panels against what fits the window; 1 at the start.
@@ -112,7 +106,7 @@ class ViewInput {
   /// Keys that concern the window and the scene as a whole.
   void window_key(Key key);
   /// Keys of what is shown besides objects. Returns whether it is one.
-  bool insight_key(Key key);
+  bool toggle_insight(Key key);
   void drag_on(std::array<double, 2> motion);
 
   Session& session_;

@@ -49,7 +49,7 @@ Box local_bounds(const state::ColliderShape& s, Quat rotation) {
       return around({}, s.shape.half_height * absolute(axis) + disc_extents(axis, r));
     case ShapeKind::kCone: {
       const Vec3 tip = s.shape.half_height * axis;
-      return geometry::merge(around(-tip, disc_extents(axis, r)), Box{tip, tip});
+      return geometry::merge(around(-tip, disc_extents(axis, r)), tip);
     }
     case ShapeKind::kHull: {
       Box box;

@@ -104,7 +104,7 @@ Extent extent_of(const state::Tables& t, const state::Deformable& object) {
     const state::PositionRecord& at = t.particles.position[p];
     extent.radius = std::max(extent.radius, at.radius);
     extent.least_radius = std::min(extent.least_radius, at.radius);
-    extent.box = geometry::merge(extent.box, {at.x, at.x});
+    extent.box = geometry::merge(extent.box, at.x);
   }
   return extent;
 }

@@ -62,7 +62,7 @@ class Form {
       if (is_round()) largest_radius_ = std::max(largest_radius_, radius_of(i));
     }
     if (object_->skin) place_skin();
-    for (const DVec3& x : place_) box_ = merge(box_, {x, x});
+    for (const DVec3& x : place_) box_ = merge(box_, x);
     if (object_->kind == Kind::kCloth) find_points_of_rows();
   }
 

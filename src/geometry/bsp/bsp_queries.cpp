@@ -252,7 +252,7 @@ void sweep_to_faces(const BspTree& tree, const BspNode& node, const Sphere& sphe
   for (std::uint32_t k = 0; k < node.face_count; ++k) {
     const auto corners = corners_of(tree, tree.faces[node.first_face + k]);
     geometry::Box3<double> box;
-    for (const DVec3& p : corners) box = merge(box, {p, p});
+    for (const DVec3& p : corners) box = merge(box, p);
     if (!overlap(box, swept)) continue;
     const BspHit hit = sweep_to_face(corners, sphere);
     if (hit.fraction < best.fraction) best = hit;

@@ -146,7 +146,7 @@ Result<Lattice> make_lattice(std::span<const SolidMesh* const> meshes) {
       if (!is_finite(p) || size > kFarthest) {
         return solid_error(solid_element("positions", i), "a coordinate is not finite, or beyond 1e9 m");
       }
-      box = merge(box, Box3<double>{p, p});
+      box = merge(box, p);
     }
   }
   const DVec3 size = box.upper - box.lower;
@@ -309,7 +309,7 @@ Result<MeshDesc> combine_solids(const MeshDesc& a, const MeshDesc& b, SolidOpera
       geometry::combine_solids(geometry::solid_mesh_of(a), geometry::solid_mesh_of(b), operation);
   if (!combined) return combined.error();
   geometry::Box3<double> box;
-  for (const DVec3& p : combined.value().positions) box = merge(box, {p, p});
+  for (const DVec3& p : combined.value().positions) box = merge(box, p);
   const double diagonal = combined.value().positions.empty() ? 0 : length(box.upper - box.lower);
   // Twice the distance at which the corners of a model's file are welded.
   const geometry::SolidMesh clean = geometry::without_slivers(combined.value(), 2e-6 * diagonal);

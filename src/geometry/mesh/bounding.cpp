@@ -149,7 +149,7 @@ Matrix3<double> axes_on(DVec3 n, const ConvexHull& hull) {
     DBox box;
     for (const Flat p : outline) {
       const DVec3 q = {along.x * p.x + along.y * p.y, along.x * p.y - along.y * p.x, 0};
-      box = merge(box, DBox{q, q});
+      box = merge(box, q);
     }
     const double area = (box.upper.x - box.lower.x) * (box.upper.y - box.lower.y);
     if (!(area < least)) continue;
@@ -192,7 +192,7 @@ BoundingSphere vertex_sphere(std::span<const DVec3> points) {
 
 DBox bounds_of(std::span<const DVec3> points) {
   return std::accumulate(points.begin(), points.end(), DBox{}, [](const DBox& box, DVec3 p) {
-    return merge(box, DBox{p, p});
+    return merge(box, p);
   });
 }
 
@@ -202,7 +202,7 @@ OrientedBox box_along(const Matrix3<double>& axes, std::span<const DVec3> points
   const Matrix3<double> into = transpose(axes);
   for (const DVec3& p : points) {
     const DVec3 q = into * (p - points[0]);
-    box = merge(box, DBox{q, q});
+    box = merge(box, q);
   }
   return {points[0] + axes * (0.5 * (box.lower + box.upper)), axes, 0.5 * (box.upper - box.lower)};
 }

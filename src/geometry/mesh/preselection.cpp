@@ -49,7 +49,7 @@ DBox world_box(const BoundingVolumes& volumes, const RigidPose& pose) {
   DBox box;
   for (const DVec3& p : volumes.positions) {
     const DVec3 q = to_world(pose, p);
-    box = merge(box, DBox{q, q});
+    box = merge(box, q);
   }
   return box;
 }

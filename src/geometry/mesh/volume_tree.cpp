@@ -83,7 +83,7 @@ DVec3 splitting_axis(const MeshView& mesh, Range triangles, const Matrix3<double
   DBox spread;
   for (const std::uint32_t t : triangles) {
     const DVec3 p = transpose(axes) * middle_of(mesh, t);
-    spread = merge(spread, DBox{p, p});
+    spread = merge(spread, p);
   }
   const int axis = longest(spread.upper - spread.lower);
   return axis == 0 ? axes.x : axis == 1 ? axes.y : axes.z;

@@ -98,7 +98,7 @@ Result<Part> make_part(SolidPiece piece) {
   Result<ConvexHull> hull = hull_around(piece, ConvexHull::kMaxVertices);
   if (!hull) return hull.error();
   Part part = {.piece = std::move(piece), .hull = std::move(hull).value()};
-  for (const Vec3& v : part.hull.vertices) part.bounds = merge(part.bounds, {v, v});
+  for (const Vec3& v : part.hull.vertices) part.bounds = merge(part.bounds, v);
   part.volume = geometry::mass_of(part.hull).volume;
   part.depth = depth_of(part.piece.surface, part.hull);
   return part;

@@ -246,7 +246,7 @@ Real default_voxel(const MeshDesc& mesh) {
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t corner : t) {
       if (corner >= mesh.positions.size()) continue;
-      box = merge(box, geometry::Box{mesh.positions[corner], mesh.positions[corner]});
+      box = merge(box, mesh.positions[corner]);
     }
   }
   const Vec3 size = box.upper - box.lower;

@@ -88,7 +88,7 @@ std::vector<std::shared_ptr<const ConvexHull>> hulls_of(std::span<const Vec3> po
     for (const std::uint32_t p : t) is_outer[p] = 1;
   }
   Box box;
-  for (const Vec3& p : solid.points) box = merge(box, Box{p, p});
+  for (const Vec3& p : solid.points) box = merge(box, p);
   const Real most = kDepth * length(box.upper - box.lower);
   std::vector<std::uint32_t> all(solid.tetrahedra.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;

@@ -122,9 +122,10 @@ bool is_drawn_out(const state::Tables& tables, const state::Deformable& cloth) {
 }
 
 /// Drops what a linear problem says nothing of: what moves too far within the substep, tangled cloths, and
-/// those that bear by their gas, which knows of no bodies.
+/// those that bear by their gas, which knows of no bodies. Marks the cloths for which that is too heavy.
 void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
                        LoadedCloths& loaded) {
+  loaded.is_left.assign(bearings.size(), 0);
   std::size_t known = bearings.size();  // Of what follows.
   DVec3 velocity;
   bool is_wild = false;
@@ -138,7 +139,12 @@ void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tabl
       is_wild = cloth.gas > 0 || is_drawn_out(tables, cloth);
     }
     const DVec3 speed = vector_cast<double>(tables.bodies.motion[press.body].v) - velocity;
-    return is_wild || length(speed) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
+    const bool is_fast = length(speed) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
+    if (!is_wild && !is_fast) return false;
+    const Real inverse_mass = tables.bodies.motion[press.body].inverse_mass;
+    if (press.presses && press.gives_way && inverse_mass * bearings[i].most_mass < Real(1))
+      loaded.is_left[i] = 1;
+    return true;
   });
 }
 
@@ -197,6 +203,15 @@ void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& t
   }
 }
 
+/// Whether anything but points of its own may load a cloth in this substep.
+bool may_be_loaded(const state::Tables& tables) {
+  const auto bodies = static_cast<std::uint32_t>(tables.bodies.count());
+  for (std::uint32_t body = 0; body < bodies; ++body) {
+    if (state::gives_way(tables.bodies, body)) return true;
+  }
+  return !tables.hooks.empty();
+}
+
 /// Drops what presses on other cloths, and counts the cloths that hold each body.
 void keep_presses_of_loaded(std::span<const ClothBearing> bearings, const state::Tables& tables,
                             LoadedCloths& loaded) {
@@ -229,14 +244,16 @@ std::vector<ClothBearing> find_bearings(const state::Tables& tables) {
   return bearings;
 }
 
-void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
-                         LoadedCloths& loaded) {
+std::uint32_t find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+                                  LoadedCloths& loaded) {
   loaded.presses.clear();
   loaded.marks.clear();
   for (const ClothBearing& bearing : bearings)
     loaded.marks.push_back(bearing.has_heavy_points ? kLoadedAtPoints : 0);
   loaded.pressing.clear();
-  if (bearings.empty()) return;
+  const bool any_heavy = std::any_of(bearings.begin(), bearings.end(),
+                                     [](const ClothBearing& bearing) { return bearing.has_heavy_points; });
+  if (bearings.empty() || (!any_heavy && !may_be_loaded(tables))) return 0;
   find_cloth_presses(tables, h, loaded.presses);
   drop_wild_presses(bearings, tables, h, loaded);
   drop_hooked_presses(tables, loaded);
@@ -249,6 +266,7 @@ void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Ta
   }
   std::sort(loaded.pressing.begin(), loaded.pressing.end());
   loaded.pressing.erase(std::unique(loaded.pressing.begin(), loaded.pressing.end()), loaded.pressing.end());
+  return static_cast<std::uint32_t>(std::count(loaded.is_left.begin(), loaded.is_left.end(), 1));
 }
 
 void find_loaded_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables,

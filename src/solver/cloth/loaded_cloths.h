@@ -52,6 +52,7 @@ struct LoadedCloths {
   std::vector<std::uint8_t> is_unconverged;  ///< By cloth, 1 for what was not solved to the end.
   std::vector<std::uint8_t> marks;           ///< Scratch: by bearing, how it is loaded, or 0.
   std::vector<double> pressing_masses;       ///< Scratch: by bearing, the mass that presses on it [kg].
+  std::vector<std::uint8_t> is_left;         ///< Scratch: by bearing, 1 where contacts alone bear too much.
   std::vector<std::uint32_t> bodies;         ///< Scratch: rows of bodies.
   std::vector<PressingBody> pairs;           ///< Scratch: cloths with bodies.
 };
@@ -61,9 +62,10 @@ struct LoadedCloths {
 
 /// Finds the cloths that are loaded by bodies which press on points, in this substep of length `h` [s], and
 /// which bodies these are. Not among them are bodies that would move by more than half a link within the
-/// substep, those hooked to the cloth, and what presses on tangled cloths or on those that hold gas.
-void find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
-                         LoadedCloths& loaded);
+/// substep, those hooked to the cloth, and what presses on tangled cloths or on those that hold gas. Returns
+/// the number of cloths on which such a body presses with more mass than they bear, except by hooks.
+[[nodiscard]] std::uint32_t find_pressed_cloths(std::span<const ClothBearing> bearings,
+                                                const state::Tables& tables, Real h, LoadedCloths& loaded);
 
 /// Adds those that are loaded by points of their own or by LoadedCloths::lent, and notes the velocities of
 /// the points of all. Call it after find_pressed_cloths.

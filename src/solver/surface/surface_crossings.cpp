@@ -16,7 +16,7 @@ namespace {
 using CrossingBox = geometry::Box3<double>;
 
 CrossingBox with(const CrossingBox& box, DVec3 p) {
-  return geometry::merge(box, {p, p});
+  return geometry::merge(box, p);
 }
 
 /// The boxes of the cells and nodes of a surface where it is now.

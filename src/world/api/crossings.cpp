@@ -56,7 +56,7 @@ void add_surface_crossings(const Tables& t, std::vector<Crossing>& found) {
   std::vector<geometry::Box3<double>> bounds(surfaces.meshes.size());
   for (std::uint32_t i = 0; i < position.size(); ++i) {
     geometry::Box3<double>& box = bounds[surfaces.mesh_of[i]];
-    box = geometry::merge(box, {position[i], position[i]});
+    box = geometry::merge(box, position[i]);
   }
   std::vector<solver::SurfaceCrossing> crossings;
   for (std::uint32_t a = 0; a < surfaces.meshes.size(); ++a) {
@@ -89,7 +89,7 @@ class BodyCrossings {
       list_faces(t_.objects[row]);
       geometry::Box3<double> bounds;
       for (const Face& face : faces_) {
-        for (const DVec3& corner : face.corner) bounds = geometry::merge(bounds, {corner, corner});
+        for (const DVec3& corner : face.corner) bounds = geometry::merge(bounds, corner);
       }
       for (std::uint32_t body = 0; body < t_.bodies.traits.size(); ++body) {
         const state::BodyTraits& traits = t_.bodies.traits[body];

@@ -50,7 +50,7 @@ bool may_meet(const Deformable& object, const SweptBlade& blade, const Tables& t
   geometry::Box3<double> box;
   for (std::uint32_t i = object.particles.first; i < object.particles.end(); ++i) {
     const DVec3 x = object.origin + vector_cast<double>(t.particles.position[i].x);
-    box = geometry::merge(box, {x, x});
+    box = geometry::merge(box, x);
   }
   return blade.may_meet(box);
 }
