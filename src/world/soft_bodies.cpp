@@ -79,12 +79,20 @@ WholeMotion whole_motion(const Tables& t, const Deformable& object, const SoftFo
   return whole;
 }
 
+/// Says that the narrow phase has seen a soft body where it is. It has no pairs, but its pose is hashed, and
+/// whether the narrow phase reads it depends on steps that a restored world has not made.
+void note_seen(std::uint32_t body, Tables& t) {
+  if (body < t.pairs.seen.size()) t.pairs.seen[body] = {t.bodies.center[body], t.bodies.rotation[body]};
+}
+
 /// Puts the frame of a soft body where its solid is.
-void follow(const WholeMotion& whole, std::uint32_t body, state::Bodies& b) {
+void follow(const WholeMotion& whole, std::uint32_t body, Tables& t) {
+  state::Bodies& b = t.bodies;
   b.center[body] = whole.center;
   b.rotation[body] = normalize(in_real(whole.rotation));
   b.motion[body] = {.v = vector_cast<Real>(whole.v)};
   b.angular_velocity[body] = vector_cast<Real>(whole.omega);
+  note_seen(body, t);
 }
 
 /// Largest speed of a point relative to the motion of the whole [m/s]. Positions are half a substep of `h`
@@ -105,7 +113,7 @@ void drop_pairs(std::uint32_t body, Tables& t) {
   goes[body] = 1;
   wake_neighbors(t, [body](std::uint32_t row) { return row == body; });
   state::remove_pairs(goes, t.colliders, t.pairs);
-  if (body < t.pairs.seen.size()) t.pairs.seen[body] = {};
+  note_seen(body, t);
 }
 
 /// Forgets contacts of deformables; the next step finds them again.
@@ -274,7 +282,7 @@ void follow_soft_bodies(WorldData& world, double dt) {
     const std::uint32_t object = soft_object(t, yielding);
     HOOKE_ASSERT(object != Tables::kNoRow);
     const WholeMotion whole = whole_motion(t, t.objects[object], *yielding.form);
-    follow(whole, yielding.body, t.bodies);
+    follow(whole, yielding.body, t);
     const bool is_still = inner_speed(t, t.objects[object], whole, h) < yielding.desc.freeze_below;
     yielding.calm = is_still ? yielding.calm + static_cast<Real>(dt) : Real(0);
     if (!is_still || yielding.calm < yielding.desc.freeze_after || !may_freeze(t, object)) continue;
@@ -300,7 +308,7 @@ void change_soft_motion(const Yielding& yielding, Vec3 v, Vec3 omega, Tables& t)
     const Vec3 p = vector_cast<Real>(place_at(t, object, row) - whole.center);
     t.particles.velocity[row].v += v + cross(omega, p);
   }
-  follow(whole_motion(t, object, *yielding.form), yielding.body, t.bodies);
+  follow(whole_motion(t, object, *yielding.form), yielding.body, t);
 }
 
 void push_soft_body(const Yielding& yielding, Vec3 force, Vec3 torque, Tables& t) {
@@ -333,7 +341,7 @@ void place_soft_body(const Yielding& yielding, const Pose& pose, Tables& t) {
   object.origin = origin;
   reset_point_contacts(t);
   wake_near_points(object, t);
-  follow(whole_motion(t, object, *yielding.form), yielding.body, t.bodies);
+  follow(whole_motion(t, object, *yielding.form), yielding.body, t);
 }
 
 Vec3 soft_spin(const Yielding& yielding, Vec3 angular_impulse, const Tables& t) {

@@ -208,6 +208,24 @@ TEST_SUITE("world/yielding") {
     }
   }
 
+  TEST_CASE("each step after a restore while soft has the hash that it had before") {
+    Scene s = make_scene(10);
+    REQUIRE(run_until(s.world, s.plate, true));
+    run(s.world, 3);
+    const Snapshot snapshot = s.world.snapshot();
+    std::vector<std::uint64_t> hashes;
+    while (s.world.soft_form(s.plate) != SolidId{}) {
+      REQUIRE(s.world.step(kFrame).healthy());
+      hashes.push_back(s.world.state_hash());
+    }
+    CHECK(hashes.size() > 5);
+    REQUIRE(s.world.restore(snapshot).has_value());
+    for (const std::uint64_t hash : hashes) {
+      REQUIRE(s.world.step(kFrame).healthy());
+      CHECK(s.world.state_hash() == hash);
+    }
+  }
+
   TEST_CASE("a restore before the blow makes the body whole") {
     Scene s = make_scene(10);
     const Snapshot snapshot = s.world.snapshot();
