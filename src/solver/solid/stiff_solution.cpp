@@ -299,8 +299,12 @@ bool lacks_motion(double error, const TetrahedronBlocks& tetrahedra) {
   return lacks_impulse(error, dot(lacking, lacking) / mass, changing);
 }
 
-/// Whether something that does not move holds points.
-bool is_anchored(const TetrahedronBlocks& tetrahedra) {
+/// Whether something that does not move holds points, as a pin does: it may give any impulse.
+bool is_anchored(const TetrahedronBlocks& tetrahedra, const state::Particles& particles) {
+  for (std::size_t i = 0; i < tetrahedra.volume_at.size(); ++i) {
+    const bool is_pinned = !(particles.velocity[tetrahedra.first_particle + i].inverse_mass > Real(0));
+    if (is_pinned && tetrahedra.volume_at[i] > Real(0)) return true;
+  }
   return std::any_of(tetrahedra.pressed.begin(), tetrahedra.pressed.end(), [](const PressedPoint& point) {
     return point.held != 0 && point.mover == PressedPoint::kNone;
   });
@@ -345,7 +349,7 @@ void aim(const state::Particles& particles, StiffSystem& system) {
   for (TetrahedronBlocks* part : system.parts) {
     take_masses(*part, particles);
     find_residual(*part);
-    part->stiff.is_anchored = is_anchored(*part);
+    part->stiff.is_anchored = is_anchored(*part, particles);
   }
   add_row_forces(system);
   add_tie_forces(system);
