@@ -1,6 +1,7 @@
 #include "hooke/hooke.h"
 
 #include "validation/crossings.h"
+#include "world/hulls.h"
 #include "world/make.h"
 
 #include <algorithm>
@@ -18,6 +19,10 @@ namespace hooke {
 namespace {
 
 using test::d;
+using test::Hull;
+using test::hull_of_ball;
+using test::hull_of_box;
+using test::hull_of_needle;
 using test::make_world;
 using test::take;
 
@@ -33,39 +38,6 @@ struct Random {
   /// Even in the logarithm.
   double log_between(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
 };
-
-/// Points and triangles within a shape, in its frame.
-struct Hull {
-  std::vector<DVec3> points = {};
-  std::vector<std::array<std::uint32_t, 3>> triangles = {};
-  std::vector<std::array<std::uint32_t, 2>> lines = {};
-};
-
-Hull hull_of_box(Vec3 half) {
-  Hull hull;
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.0, 1.0})
-      for (const double z : {-1.0, 1.0}) hull.points.push_back({x * d(half.x), y * d(half.y), z * d(half.z)});
-  hull.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
-                    {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-  return hull;
-}
-
-/// An octahedron whose corners lie on the sphere.
-Hull hull_of_ball(Real radius) {
-  const double r = d(radius);
-  Hull hull;
-  hull.points = {{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}};
-  hull.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  return hull;
-}
-
-Hull hull_of_needle(Real half_height) {
-  Hull hull;
-  hull.points = {{0, -d(half_height), 0}, {0, d(half_height), 0}};
-  hull.lines = {{0, 1}};
-  return hull;
-}
 
 struct Thrown {
   BodyId id = {};
@@ -96,16 +68,7 @@ Surfaces surfaces_of(const Room& room, const Thrown* body) {
   for (const ClothId id : room.cloths) take_mesh(room.world.positions(id), room.world.triangles(id));
   for (const SolidId id : room.solids) take_mesh(room.world.surface(id), room.world.triangles(id));
   if (body == nullptr) return all;
-  const Pose pose = room.world.pose(body->id);
-  const Quaternion<double> turn = {d(pose.rotation.x), d(pose.rotation.y), d(pose.rotation.z),
-                                   d(pose.rotation.w)};
-  std::vector<DVec3> points;
-  // A thousandth less, so that rounding of the pose does not count.
-  for (const DVec3 p : body->hull.points)
-    points.push_back(pose.position + rotate(normalize(turn), 0.999 * p));
-  const std::uint32_t from = first();
-  take_mesh(points, body->hull.triangles);
-  for (const auto& [a, b] : body->hull.lines) all.lines.push_back({from + a, from + b});
+  test::append(room.world.pose(body->id), body->hull, all);
   return all;
 }
 
