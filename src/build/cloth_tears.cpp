@@ -225,6 +225,40 @@ void open_scored(std::uint32_t object, Tables& t) {
   t.objects[object].scored = still_joined<3>(scored, after);
 }
 
+/// A point that a tear has reached.
+struct Reached {
+  std::uint32_t particle = 0;  ///< Its row.
+  double strain = 0;           ///< Of the point that has split beside it.
+};
+
+/// Splits points whose triangles hang together by nothing but the point, as where a tear has reached the rim
+/// or another tear: no force goes through a point alone.
+void part_fans(std::uint32_t object, double time, std::vector<Reached>& reached, Tables& t,
+               std::vector<ClothTearEvent>& events) {
+  const Deformable& cloth = t.objects[object];
+  const auto by_row = [](const Reached& a, const Reached& b) { return a.particle < b.particle; };
+  std::stable_sort(reached.begin(), reached.end(), by_row);
+  const ElementMesh<3> mesh = triangles_of(t, cloth);
+  const std::vector<std::uint32_t> index = indices_of(t, cloth);
+  std::vector<PointSplit> splits;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const std::uint32_t particle = reached[i].particle;
+    if (i > 0 && particle == reached[i - 1].particle) continue;
+    const std::size_t first = splits.size();
+    append_splits(mesh, particle, parts_at<3>(mesh, particle, {}), splits);
+    for (std::size_t k = first; k < splits.size(); ++k) {
+      const DVec3 offset = vector_cast<double>(t.particles.position[particle].x);
+      events.push_back({.cloth = t.cloth_slots.id_of(cloth.slot),
+                        .point = index[particle - cloth.particles.first],
+                        .added = cloth.particles.count + static_cast<std::uint32_t>(k),
+                        .place = cloth.origin + offset,
+                        .strain = static_cast<Real>(reached[i].strain),
+                        .time = time});
+    }
+  }
+  if (!splits.empty()) split_cloth(object, mesh, splits, t);
+}
+
 }  // namespace
 
 void tear_cloth(std::uint32_t object, double time, Tables& t, std::vector<ClothTearEvent>& events) {
@@ -235,15 +269,17 @@ void tear_cloth(std::uint32_t object, double time, Tables& t, std::vector<ClothT
   const Deformable& cloth = t.objects[object];
   const ElementMesh<3> mesh = triangles_of(t, cloth);
   const std::vector<std::uint32_t> index = indices_of(t, cloth);
-  std::vector<std::uint32_t> near;  // Points beside those that split in this step, which relieves them.
+  std::vector<Reached> near;  // Points that split in this step, and those beside, which that relieves.
   std::vector<PointSplit> splits;
   for (const Candidate& candidate : candidates) {
     if (splits.size() == kMostTears) break;
-    if (std::find(near.begin(), near.end(), candidate.particle) != near.end()) continue;
+    const auto is_it = [&](const Reached& point) { return point.particle == candidate.particle; };
+    if (std::any_of(near.begin(), near.end(), is_it)) continue;
     std::optional<PointSplit> split = split_across(t, mesh, candidate);
     if (!split) continue;
-    for (const std::uint32_t element : mesh.incidence.of(candidate.particle))
-      near.insert(near.end(), mesh.corners[element].begin(), mesh.corners[element].end());
+    for (const std::uint32_t element : mesh.incidence.of(candidate.particle)) {
+      for (const std::uint32_t p : mesh.corners[element]) near.push_back({p, candidate.strain});
+    }
     const DVec3 offset = vector_cast<double>(t.particles.position[candidate.particle].x);
     events.push_back({.cloth = t.cloth_slots.id_of(cloth.slot),
                       .point = index[candidate.particle - cloth.particles.first],
@@ -252,10 +288,12 @@ void tear_cloth(std::uint32_t object, double time, Tables& t, std::vector<ClothT
                       .strain = static_cast<Real>(candidate.strain),
                       .time = time,
                       .burst = splits.empty() && cloth.gas > 0});
+    near.push_back({cloth.particles.end() + static_cast<std::uint32_t>(splits.size()), candidate.strain});
     splits.push_back(std::move(*split));
   }
   split_cloth(object, mesh, splits, t);
   open_scored(object, t);
+  part_fans(object, time, near, t, events);
 }
 
 }  // namespace hooke::build
