@@ -10,7 +10,6 @@
 #include "hooke/text_of.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -30,7 +29,7 @@ struct SettleOptions {
   ModelOptions model;
   std::vector<double> center;
   DropOptions drops;
-  std::optional<double> friction, restitution, height, mass, slope, friction_torque;
+  std::optional<double> friction, restitution, height, disturbance, mass, slope, friction_torque;
   std::vector<std::string> cables;
   std::vector<double> axis, through;
   std::string json, csv, out;
@@ -43,6 +42,7 @@ struct Settled {
   MeshDesc solid;  ///< What drops: closed, or without triangles if the model could not be mended.
   StablePoses poses;
   std::optional<DropCounts> drops;
+  std::optional<std::vector<int>> stays;  ///< For each pose, the disturbances that it outlived.
 };
 
 /// Adds the options of rests that are not on a horizontal plane.
@@ -64,11 +64,34 @@ void add_rests(CLI::App& app, SettleOptions& options) {
   app.get_option("--friction-torque")->needs(axis);
   add_number(app, "--slope", options.slope, 0, 89.9, "Lay it on a slope that falls along +x [degrees]");
   add_number(app, "--mass", options.mass, 1e-9, 1e12, "Mass, for tensions and torques [kg]; 1 by default");
-  const auto drops = app.get_option("--drops");
   auto* const slope = app.get_option("--slope");
-  axis->excludes(cables)->excludes(slope)->excludes(drops);
-  cables->excludes(slope)->excludes(drops);
-  slope->excludes(drops);
+  axis->excludes(cables)->excludes(slope);
+  cables->excludes(slope);
+  for (const char* name : {"--drops", "--disturb"}) {
+    for (auto* const other : {axis, cables, slope}) other->excludes(app.get_option(name));
+  }
+}
+
+/// Adds the options of trials in a world.
+void add_trials(CLI::App& app, SettleOptions& options) {
+  auto* const drops =
+      app.add_option("--drops", options.drops.count, "Also drop it so often in a world, turned at random")
+          ->check(CLI::Range(1, 1000000));
+  drops->excludes("--center");
+  app.add_option("--seed", options.drops.seed, "Seed of the random orientations")->needs("--drops");
+  add_number(app, "--height", options.height, 0, 1e6,
+             "Height of the lowest point before a drop [m]; the radius about the center by default");
+  add_number(app, "--disturb", options.disturbance, 1e-6, 1e6,
+             "Also lift it so far out of each pose, and tilt it so far to eight sides, and tell whether it "
+             "stays [m]");
+  app.get_option("--disturb")->excludes("--center");
+  add_number(app, "--friction", options.friction, 0, 100,
+             "Friction of model and plane, for --drops, --disturb and --slope; 0.5 by default");
+  add_number(app, "--restitution", options.restitution, 0, 1, "Restitution of both; 0 by default");
+  app.get_option("--height")->needs(drops);
+  app.add_option("--workers", options.drops.workers,
+                 "Threads for --drops and --disturb; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
 }
 
 void add_options(CLI::App& app, SettleOptions& options) {
@@ -80,17 +103,7 @@ void add_options(CLI::App& app, SettleOptions& options) {
       ->delimiter(',')
       ->expected(3)
       ->option_text("X,Y,Z");
-  auto* const drops =
-      app.add_option("--drops", options.drops.count, "Also drop it so often in a world, turned at random")
-          ->check(CLI::Range(1, 1000000));
-  drops->excludes("--center");
-  app.add_option("--seed", options.drops.seed, "Seed of the random orientations")->needs("--drops");
-  add_number(app, "--height", options.height, 0, 1e6,
-             "Height of the lowest point before a drop [m]; the radius about the center by default");
-  add_number(app, "--friction", options.friction, 0, 100,
-             "Friction of model and plane, for --drops and --slope; 0.5 by default");
-  add_number(app, "--restitution", options.restitution, 0, 1, "Restitution of both; 0 by default");
-  for (const char* name : {"--height", "--restitution"}) app.get_option(name)->needs(drops);
+  add_trials(app, options);
   add_rests(app, options);
   app.add_option("--csv", options.csv, "Write the poses as a table; - prints it");
   app.add_option("--json", options.json, "Write all as JSON; - prints it");
@@ -104,6 +117,7 @@ void add_options(CLI::App& app, SettleOptions& options) {
       "Examples:\n"
       "  hooke settle scenes/models/crate.3ds\n"
       "  hooke settle scenes/models/crate.3ds --fit 1 --drops 20 --csv poses.csv\n"
+      "  hooke settle scenes/models/crate.3ds --fit 1 --disturb 0.001\n"
       "  hooke settle scenes/models/lantern.3ds --fit 0.4 --out lying.glb\n"
       "  hooke settle scenes/models/crate.3ds --fit 1 --mass 50 --cable 0.5,0.5,0,0,3,0,2\n"
       "  hooke settle scenes/models/crate.3ds --fit 1 --axis 0,0,1 --through 0.5,0,0\n"
@@ -136,33 +150,39 @@ Result<Settled> settle(Model model, const SettleOptions& options) {
   return settled;
 }
 
-Result<void> drop(Settled& settled, const SettleOptions& options) {
-  if (options.drops.count == 0) return {};
+/// Makes the trials in a world that were asked for.
+Result<void> try_out(Settled& settled, const SettleOptions& options) {
+  if (options.drops.count == 0 && !options.disturbance) return {};
   if (settled.solid.triangles.empty()) {
-    return Error{ErrorCode::kOutOfRange, "--drops", "only a closed model can be dropped; close it first"};
+    return Error{ErrorCode::kOutOfRange, options.drops.count > 0 ? "--drops" : "--disturb",
+                 "only a closed model can be dropped; close it first"};
   }
   DropOptions drops = options.drops;
-  double radius = 0;
-  for (const Vec3& p : settled.solid.positions) {
-    radius = std::max(radius, length(vector_cast<double>(p) - settled.poses.center));
-  }
-  drops.height = options.height.value_or(radius);
+  drops.height = options.height.value_or(radius_of(settled.solid, settled.poses.center));
   drops.friction = options.friction.value_or(drops.friction);
   drops.restitution = options.restitution.value_or(drops.restitution);
-  auto counts = drop(settled.solid, settled.poses, drops);
-  if (!counts) return counts.error();
-  settled.drops = std::move(counts).value();
+  if (options.drops.count > 0) {
+    auto counts = drop(settled.solid, settled.poses, drops);
+    if (!counts) return counts.error();
+    settled.drops = std::move(counts).value();
+  }
+  if (options.disturbance) {
+    auto stays = disturb(settled.solid, settled.poses, *options.disturbance, drops);
+    if (!stays) return stays.error();
+    settled.stays = std::move(stays).value();
+  }
   return {};
 }
 
 std::string csv_of(const Settled& settled) {
   std::string text = "pose,probability,normal_x,normal_y,normal_z,height,margin,tip_angle,tip_height";
-  text += settled.drops ? ",drops\n" : "\n";
+  text += std::string(settled.drops ? ",drops" : "") + (settled.stays ? ",stays\n" : "\n");
   for (std::size_t i = 0; i < settled.poses.poses.size(); ++i) {
     const StablePose& p = settled.poses.poses[i];
     text += text_of("%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", i + 1, p.probability, p.normal.x,
                     p.normal.y, p.normal.z, p.height, p.margin, p.tip_angle, p.tip_height);
-    text += settled.drops ? text_of(",%d\n", settled.drops->poses[i]) : "\n";
+    if (settled.drops) text += text_of(",%d", settled.drops->poses[i]);
+    text += settled.stays ? text_of(",%d\n", (*settled.stays)[i]) : "\n";
   }
   return text;
 }
@@ -180,6 +200,7 @@ std::string json_text_of(const Settled& settled, const SettleOptions& options) {
     const StablePose& p = settled.poses.poses[i];
     Json pose = {{"probability", p.probability}, {"normal", json_of_vector(p.normal)}};
     if (settled.drops) pose["frequency"] = double(settled.drops->poses[i]) / options.drops.count;
+    if (settled.stays) pose["stays"] = (*settled.stays)[i];
     pose["height"] = p.height;
     pose["margin"] = p.margin;
     pose["tip_angle"] = p.tip_angle;
@@ -195,6 +216,15 @@ std::string json_text_of(const Settled& settled, const SettleOptions& options) {
     report["seed"] = options.drops.seed;
     report["elsewhere"] = double(settled.drops->elsewhere) / options.drops.count;
     report["moving"] = double(settled.drops->moving) / options.drops.count;
+    Json& others = report["other_poses"] = Json::array();
+    for (const OtherPose& other : settled.drops->others) {
+      others.push_back({{"normal", json_of_vector(other.normal)},
+                        {"frequency", double(other.count) / options.drops.count}});
+    }
+  }
+  if (settled.stays) {
+    report["disturbance"] = *options.disturbance;
+    report["disturbances"] = kDisturbances;
   }
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -203,12 +233,13 @@ void print_table(const Settled& settled, const SettleOptions& options) {
   const StablePoses& all = settled.poses;
   std::printf("%s: %zu stable poses, center of mass at (%.6g, %.6g, %.6g) m\n", options.input.c_str(),
               all.poses.size(), all.center.x, all.center.y, all.center.z);
-  std::printf("%4s %11s%s %26s %10s %9s %10s\n", "pose", "probability", settled.drops ? "   dropped" : "",
-              "facet's normal", "height/m", "tips/deg", "rising/m");
+  std::printf("%4s %11s%s%s %26s %10s %9s %10s\n", "pose", "probability", settled.drops ? "   dropped" : "",
+              settled.stays ? "  stays" : "", "facet's normal", "height/m", "tips/deg", "rising/m");
   for (std::size_t i = 0; i < all.poses.size(); ++i) {
     const StablePose& p = all.poses[i];
     std::string dropped;
     if (settled.drops) dropped = text_of(" %9.4f", double(settled.drops->poses[i]) / options.drops.count);
+    if (settled.stays) dropped += text_of("    %d/%d", (*settled.stays)[i], kDisturbances);
     std::printf("%4zu %11.4f%s   (%7.4f,%7.4f,%7.4f) %10.4g %9.2f %10.3g\n", i + 1, p.probability,
                 dropped.c_str(), p.normal.x, p.normal.y, p.normal.z, p.height,
                 p.tip_angle * 180 / std::numbers::pi, p.tip_height);
@@ -216,6 +247,10 @@ void print_table(const Settled& settled, const SettleOptions& options) {
   if (settled.drops && settled.drops->elsewhere + settled.drops->moving > 0) {
     std::printf("of %d drops %d came to rest in no pose of these, and %d were still moving after a minute\n",
                 options.drops.count, settled.drops->elsewhere, settled.drops->moving);
+    for (const OtherPose& other : settled.drops->others) {
+      std::printf("%4s %11s %9.4f   (%7.4f,%7.4f,%7.4f) points down, no stable pose\n", "-", "",
+                  double(other.count) / options.drops.count, other.normal.x, other.normal.y, other.normal.z);
+    }
   }
 }
 
@@ -328,8 +363,12 @@ int command_settle(Arguments arguments) {
   SettleOptions options;
   add_options(app, options);
   if (const auto code = parse(app, arguments)) return *code;
-  if (options.friction && options.drops.count == 0 && !options.slope) {
-    return report({ErrorCode::kOutOfRange, "--friction", "needs --drops or --slope"});
+  const bool tries = options.drops.count > 0 || options.disturbance;
+  if (options.friction && !tries && !options.slope) {
+    return report({ErrorCode::kOutOfRange, "--friction", "needs --drops, --disturb or --slope"});
+  }
+  if (options.restitution && !tries) {
+    return report({ErrorCode::kOutOfRange, "--restitution", "needs --drops or --disturb"});
   }
 
   auto model = import_model(options.input, options.model.options());
@@ -347,7 +386,7 @@ int command_settle(Arguments arguments) {
           text_of("its hull has more than 256 corners; those used leave points %.3g m outside",
                   settled.value().poses.hull_error)});
   }
-  if (const auto dropped = drop(settled.value(), options); !dropped) return report(dropped.error());
+  if (const auto tried = try_out(settled.value(), options); !tried) return report(tried.error());
   if (!is_standard_output(options.json) && !is_standard_output(options.csv)) {
     print_table(settled.value(), options);
   }

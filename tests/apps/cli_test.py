@@ -686,7 +686,7 @@ class Convert(Program):
         for arguments, complaint in ((["--cable", "1,2,3"], "^--cable: '1,2,3' is not seven numbers"),
                                      (["--cable", "0,0,0,0,1,0,-1"], r"^cables\[0\]\.length: "),
                                      (["--axis", "0,0,0"], "^axis: must have a length"),
-                                     (["--friction", 1], "^--friction: needs --drops or --slope")):
+                                     (["--friction", 1], "^--friction: needs --drops, --disturb or --slope")):
             self.assert_one_line(self.hooke("settle", "brick.obj", *arguments, code=2)[1], complaint)
 
     def test_an_open_model_takes_its_center_from_voxels_or_from_the_user(self):
