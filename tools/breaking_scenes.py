@@ -75,7 +75,7 @@ def balloon_burst():
 
 def door_and_car():
     half_width, half_height, half_depth = 1.0, 1.0, 0.03
-    gap, hinge_x, speed, radius, aside = 0.02, -1.02, 4.0, 0.28, 0.25
+    gap, hinge_x, speed, radius, aside = 0.22, -1.02, 2.6, 0.28, 0.25
     start = -2.6
     wheels = [(side, end) for side in (-1, 1) for end in (-1, 1)]
     lie = turn(Z, math.pi / 2)
@@ -89,27 +89,29 @@ def door_and_car():
     made = scene(
         "A door and a car",
         "The paper's door (3.6.1): a car drives against a door of tin on two hinges. The blow is more than the door takes as "
-        "a rigid body. It turns soft, is dented, swings open against a wall, and is a rigid body again, with its dent and on its hinges, "
-        "within two seconds.", 3, [3.6, 2.1, 4.6], [0, 0.95, 0.3], {"ground": {}}, [
+        "a rigid body. It turns soft, is bent by fifteen centimeters, swings open, and is a rigid body again, with its dent and on its "
+        "hinges, within two seconds.", 3, [3.6, 2.1, 4.6], [0, 0.95, 0.3], {"ground": {}}, [
             ground(),
             body("posts", "concrete", box(0.15, 1.2, 0.15), [hinge_x - 0.17, 1.2, 0], "static",
                  array={"list": [[0, 0, 0], [2.4, 0, 0]]}),
             body("lintel", "concrete", box(1.35, 0.15, 0.15), [0, 2.55, 0], "static"),
             body("wall", "concrete", box(0.15, 1.2, 1.15), [hinge_x - 0.55, 1.2, 1.3], "static"),
-            body("door", "tin", box(half_width, half_height, half_depth), [0, half_height + gap, 0], mass=90,
+            body("door", "tin", box(half_width, half_height, half_depth), [0, half_height + gap, 0], mass=300,
                  angular_damping=6),
             body("car", "paint", car, [aside, 0.5, start], mass=420, velocity=[0, 0, speed]),
             *(body(f"wheel_{i}", "rubber", {"cylinder": {"radius": radius, "half_height": 0.07}},
                    [aside + 0.6 * side, radius, start + 0.75 * end], rotation=lie, mass=14, velocity=[0, 0, speed],
                    angular_velocity=spin) for i, (side, end) in enumerate(wheels)),
         ], [
-            promise("soft", "==", 0, "door", at_step=15),
-            promise("soft", "==", 1, "door", at_step=40),
+            promise("soft", "==", 0, "door", at_step=30),
+            promise("soft", "==", 1, "door", at_step=35),
             promise("yielded", "==", 1, "door"),
-            promise("soft", "==", 0, "door", at_step=140),
+            promise("soft", "==", 0, "door", at_step=150),
+            # What there was at the start, 1704 J of motion and 5986 J of height: the blow makes none.
+            promise("total_energy", "<", 7690),
             promise("gap", "<", 0.002, "upper_hinge"),
             promise("gap", "<", 0.002, "lower_hinge"),
-        ], hooks=[
+        ], world={"particle_substeps": 3}, hooks=[
             hook("upper_hinge", "hinge", "door", [hinge_x, 1.75, 0], "posts[0]", axis=Y),
             hook("lower_hinge", "hinge", "door", [hinge_x, 0.3, 0], "posts[0]", axis=Y),
             *(hook(f"axle_{i}", "hinge", f"wheel_{i}", [aside + 0.6 * side, radius, start + 0.75 * end], "car", axis=X,
@@ -119,8 +121,8 @@ def door_and_car():
         "paint": {"like": "steel", "color": [0.5, 0.03, 0.03], "metalness": 0.3, "roughness": 0.25},
         "tin": {
             "like": "steel", "roughness": 0.45, "yields": {
-                "impulse": 60, "cell": 0.2, "young_modulus": 10000000, "damping": 0.003, "yield_stress": 30000,
-                "freeze_below": 0.15, "freeze_after": 0.1
+                "impulse": 200, "cell": 0.2, "young_modulus": 10000000, "damping": 0.02, "yield_stress": 60000,
+                "freeze_below": 2, "freeze_after": 0.05
             }
         }
     }
