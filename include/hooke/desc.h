@@ -183,9 +183,13 @@ struct PartDesc {
 /// momentum and angular momentum, that dents for good, and a rigid body again, of its new shape, once it has
 /// come to rest in itself. docs/decisions/0050-rigid-to-soft-and-back.md says how.
 ///
-/// Such a body is dynamic, collides, has one shape that is no compound, and a `gravity_scale` of 1. Hooks
-/// hold it by ball, hinge, fixed, distance or rope_slide; while it is soft, hinges and fixed hooks hold it by
-/// two and three balls, and their limits, springs and motors rest. So do its damping, drag and lift.
+/// Such a body is dynamic, collides, is no sensor, has one shape that is neither a compound nor a half-space,
+/// a `gravity_scale` of 1 and no `dipole_moment`. Hooks hold it by kBall, kHinge, kFixed, kDistance or
+/// kRopeSlide. While it is soft, hinges and fixed hooks hold it by two and three balls: limits, springs,
+/// motors and break_torque rest, and break_force is judged by the ball at the hook's place alone. So do its
+/// damping, drag and lift rest. It stays soft while a point of its solid is pinned, and for good once that
+/// has been cut. A dented body whose tetrahedra have become too flat for a solid stays rigid for good.
+/// Errors of add_body also: a shape that cannot be filled with tetrahedra.
 struct YieldsDesc {
   /// Impulse along contact normals [N s], positive: the body yields in the step in which one other object
   /// gives it more. What merely lies on it gives it its weight times the length of a step.
@@ -263,7 +267,9 @@ enum class HookKind : std::uint8_t {
   kDistance,  ///< The distance of two points stays within `limits`, or as it was if there are none.
   kWheel,     ///< b slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
   kSixDegrees,  ///< Each of the six `freedoms` has its own limits, spring and motor.
-  kRopeSlide,   ///< b slides along rope a, between its ends: a bead on a string. `anchor` says where it is.
+  /// b slides along rope a, between its ends: a bead on a string. `anchor` says where it is. If the rope
+  /// breaks so that b is left on a single point, the hook is gone, and no event tells it.
+  kRopeSlide,
 };
 
 /// Bounds of a freedom [m] or [rad]: finite ones within 1e9, infinite ones for none.
@@ -334,8 +340,12 @@ struct HookDesc {
   HookMotor motor = {};
   HookFreedom steering = {.locked = true};   ///< kWheel: the angle about the suspension's axis.
   std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y and z, then angles about them.
-  Real break_force = kRigid;                 ///< Force [N], positive: the hook breaks if it needs more.
-  Real break_torque = kRigid;                ///< Torque [N m], positive: the hook breaks if it needs more.
+  /// Force [N], positive, as a mean over a substep: what needs more passes on about this much in that
+  /// substep, and the hook is gone at the end of the step (Events::breaks). Force and torque are judged each
+  /// by itself. Where hooks are solved row by row (RouteCounts::hooks_block, hooks_iterative) it breaks when
+  /// two substeps in a row need more.
+  Real break_force = kRigid;
+  Real break_torque = kRigid;  ///< Torque [N m], positive, likewise.
   /// Whether the two bodies may touch each other. Of a body and a point, it says so for the point and for
   /// what of its object was inside the body when it was hooked.
   bool collide = false;
@@ -490,8 +500,11 @@ struct ClothDesc {
   /// Force per width that the cloth can take [N/m], positive; any by default. It tears where the strain of
   /// its triangles times `stretch_stiffness`, as a mean at a point, exceeds this: the point splits, across
   /// the direction of the largest strain. Beside a crack 60 % of it are enough, so that tears run. At most 8
-  /// points a step split; Events::tears says which. A closed cloth with gas bursts: the gas is gone at once.
-  /// Tethers across a crack go. It needs a finite `stretch_stiffness`.
+  /// points of it split in a step, and with them what a cut has scored and what hangs by a point alone;
+  /// World::splits says which. A closed cloth with gas bursts: the gas is gone at once. Tethers across a
+  /// crack go. It needs a finite `stretch_stiffness`, and is strain times that of one spring: a force per
+  /// width in a grid of square cells pulled along its yarns, and in other cells different by the ratio of
+  /// their sides.
   std::optional<Real> strength = {};
   /// The strain that it can take, positive, in place of `strength`, or besides; the smaller one counts.
   std::optional<Real> tear_strain = {};
@@ -714,7 +727,8 @@ struct FieldDesc {
 class ForceView;
 
 /// A function that adds forces to the points of objects. It is called once per particle substep for each
-/// object, in order of creation, on the thread that called step().
+/// object, in order of creation, on the thread that called step(). A step in which a body yields
+/// (BodyDesc::yields) is taken back and made again: then it is called again for the same time.
 using ForceLaw = std::function<void(ForceView&)>;
 
 /// The bodies that forces move and that are awake, as a force law sees them, in the same order in every run.

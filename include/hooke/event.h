@@ -7,8 +7,9 @@
 #include <vector>
 
 /// \file
-/// What happened in a step. Bodies and deformables take part in it if their descriptions ask for it:
-/// reports_contacts, hit_speed, sensor.
+/// What happened in a step. Contacts, hits and visits are listed of what asks for them: reports_contacts,
+/// hit_speed, sensor. Breaks, tears, yields, freezes and sleep are listed always. World::cut tells what it
+/// did by CutResult, and is no event.
 
 namespace hooke {
 
@@ -143,8 +144,12 @@ struct Events {
   std::vector<BreakEvent> breaks;  ///< Hooks that broke, in order of time, then of the hooks' creation.
   /// Segments of ropes that broke, in order of time, then of the ropes' creation, then along the rope.
   std::vector<RopeBreakEvent> rope_breaks;
-  std::vector<ClothTearEvent> tears;        ///< Points of cloths that split, in order of cloths' creation.
-  std::vector<SolidTearEvent> solid_tears;  ///< Points of solids that split, likewise.
+  /// Points of cloths that split, in order of cloths' creation, then of need, then those that hung by a point
+  /// alone. What a cut had scored opens without an event: World::splits lists all.
+  std::vector<ClothTearEvent> tears;
+  /// Points of solids that split, likewise. What then hangs by an edge or a point alone comes apart without
+  /// an event.
+  std::vector<SolidTearEvent> solid_tears;
   std::vector<YieldEvent> yields;    ///< Bodies that became soft, in order of time, then of their creation.
   std::vector<FreezeEvent> freezes;  ///< Bodies that became rigid again, in order of their creation.
 };

@@ -110,13 +110,15 @@ struct Fracture {
 /// Describes the body of one cell, without its mesh: that is FractureCell::mesh, a hull or, of a cell that is
 /// not convex, a mesh. Position, rotation, velocities and surface are those that `whole` gives to it; the
 /// mass is that of its volume, by density or as a share of BodyDesc::mass. Connection points go to the cell
-/// in which they lie. `index` counts cells.
+/// in which they lie. `index` is below the number of cells, or
+/// the description is that of no body.
 [[nodiscard]] BodyDesc describe_cell(const Fracture& fracture, std::size_t index, const BodyDesc& whole);
 
 /// Describes the glue of one bond, without its bodies: a HookKind::kFixed at the center of the face that
 /// takes the force strength x area and the torque strength x section modulus, the bending moment at which the
 /// stress of an elastic section reaches `strength` [Pa] at its edge. A hook judges force and torque each by
-/// itself. `whole` says where the bodies are; `index` counts bonds.
+/// itself. `whole` says where the bodies are; `index` is below the number of bonds, or
+/// the description is that of no hook.
 [[nodiscard]] HookDesc describe_bond(const Fracture& fracture, std::size_t index, const BodyDesc& whole,
                                      Real strength);
 
@@ -124,7 +126,7 @@ struct Fracture {
 struct FracturedBody {
   std::vector<BodyId> bodies = {};  ///< One for each of Fracture::cells.
   std::vector<HookId> hooks = {};   ///< One for each of Fracture::bonds; stale once it has broken.
-  std::vector<MeshId> meshes = {};  ///< One for each of Fracture::cells.
+  std::vector<MeshId> meshes = {};  ///< One for each of Fracture::cells; may be removed, bodies keep them.
 };
 
 /// Adds a body that stands as one and breaks along its cells.

@@ -39,7 +39,7 @@ class RestWatch {
  public:
   /// What counts as rest.
   struct Limits {
-    double residual = 0;      ///< Sum of unbalanced forces [N].
+    double residual = 0;      ///< Largest Unrest::sum that counts as rest [N].
     double speed = 0;         ///< [m/s]
     double drift = 0;         ///< What moves less in a second is at rest, too, whatever its jitter [m].
     std::uint64_t steps = 0;  ///< Steps that it is given in all.
@@ -57,9 +57,9 @@ class RestWatch {
   /// Takes what moved in a step. A step in which something broke is `disturbed`, and no rest. It is rest
   /// after three calm steps on end.
   Verdict observe(const Unrest& unrest, bool disturbed = false);
-  /// Whether what moved `farthest` [m] in a second is at rest although it jitters or creeps, as large cloths
-  /// do. That is given up on late: 100 times as much is allowed after a third of the steps, and 1000 times
-  /// near their end.
+  /// Whether what moved `farthest` [m] within the last second is at rest, although it jitters or creeps as
+  /// large cloths do: at most Limits::drift; 100 times that from a third of Limits::steps on, and 1000 times
+  /// from nine tenths on.
   [[nodiscard]] bool is_still(double farthest) const;
   /// Steps observed.
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
@@ -75,10 +75,10 @@ class RestWatch {
 /// How World::settle goes about it.
 struct SettleDesc {
   Real dt = Real(1) / Real(60);  ///< Length of a step [s]. [1e-6, 1]
-  double residual = 1e-5;        ///< Sum of unbalanced forces, over `force`, that counts as rest. [1e-9, 1]
-  double force = 0;              ///< [N]; the weight of all that moves if it is 0.
-  double drift = 1e-6;           ///< What moves less in a second is at rest, too [m].
-  double seconds = 60;           ///< Time for it. (0, 1e5]
+  double residual = 1e-5;        ///< Rest: SettleReport::sum, over `force`, is at most this. [1e-9, 1]
+  double force = 0;     ///< What it is compared with [N], not negative; with 0 the weight of all that moves.
+  double drift = 1e-6;  ///< What moves less in a second is at rest, too [m], not negative.
+  double seconds = 60;  ///< Time for it. (0, 1e5]
 };
 
 /// How settling ended.

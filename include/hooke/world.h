@@ -511,7 +511,8 @@ class World {
   [[nodiscard]] BodyId body_of(SolidId id) const;
   ///@{
   /// The surface of a body with BodyDesc::yields as it is now, rigid or soft, in the world [m], and its
-  /// triangles, as surface() and triangles() of a solid. The triangles never change. Empty for other bodies.
+  /// triangles, as surface() and triangles() of a solid. The triangles change only if its
+  /// soft form is cut (World::cut), and then it stays soft. Empty for other bodies.
   [[nodiscard]] std::vector<DVec3> surface(BodyId id) const;
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(BodyId id) const;
   ///@}
@@ -619,9 +620,10 @@ class World {
   /// Cuts ropes, cloths and solids with a blade that sweeps a surface, now. Ropes lose the segments that it
   /// crosses. Triangles of a cloth and tetrahedra of a solid part at their common edge or face if the way
   /// from the middle of the one to that of the other crosses the surface: a crack follows the blade to within
-  /// an element. Points at it become several, with shares of the mass at one place and with one velocity, so
-  /// that mass and momentum stay; springs along it are shared out, and what leads across it goes. Errors:
-  /// ends of the edge beyond limits::kPlace, an id that is stale.
+  /// an element. Points at it become several, with shares of the mass at one place (of what has self_contact
+  /// drawn apart by a thousandth of the way to the middles of their elements) and with one velocity, so that
+  /// mass and momentum stay; springs along it are shared out, and what leads across it goes. Errors: ends of
+  /// the edge beyond limits::kPlace, an id that is stale.
   Result<CutResult> cut(const CutDesc& desc);
 
   // Sleepers wake where these calls, or objects that come and go, change what acts on them. A force law does
@@ -650,7 +652,8 @@ class World {
   /// by the steps. Errors: a field of `desc` out of range, no weight and no SettleDesc::force, a call during
   /// a step.
   Result<SettleReport> settle(const SettleDesc& desc = {});
-  /// Returns what moves after a step of `dt` [s].
+  /// Returns what moves now, but for what `left_out` names; stale ids in it are passed over. `dt` is the
+  /// length of the last step [s], by which momenta become forces; all is zero if it is not positive.
   [[nodiscard]] Unrest unrest(double dt, const LeftOut& left_out = {}) const;
   /// Takes all speed from dynamic bodies and free points. Errors: a call during a step.
   Result<void> stop(const LeftOut& left_out = {});

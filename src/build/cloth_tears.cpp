@@ -22,7 +22,7 @@ using state::Tables;
 using Corners = std::array<std::uint32_t, 3>;
 
 /// Most points of a cloth that split in one step; the rest waits for the next. Smaller: tears run slower, at
-/// most so many edges a step. Larger: a step with a tear takes longer. Chosen by hand; no measurement is
+/// most so many points a step. Larger: a step with a tear takes longer. Chosen by hand; no measurement is
 /// recorded.
 constexpr std::size_t kMostTears = 8;
 

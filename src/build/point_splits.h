@@ -15,7 +15,7 @@
 
 /// \file
 /// Points that become several, because the triangles or tetrahedra around them part: the part that is common
-/// to cloth that tears and to cloths and solids that are cut. Elements are counted from the object's first
+/// to cloths and solids that tear and that are cut. Elements are counted from the object's first
 /// one, particles are rows of their table.
 
 namespace hooke::build {

@@ -20,10 +20,14 @@ using state::Bodies;
 using state::Tables;
 
 /// Share of YieldsDesc::impulse that two bodies on their way to each other must be able to give for the step
-/// to be watched. Larger: bodies that others push from behind yield a step too late. Smaller: more copies.
+/// to be watched [ratio]. Larger: bodies that others push from behind yield a step too late. Smaller: more
+/// copies. Chosen by hand; no measurement is recorded.
 constexpr double kRisk = 0.25;
-/// How often one step is taken back. What yields beyond that does so at its end.
+/// How often one step is taken back. What yields beyond that does so at its end. Larger: a step with many
+/// blows takes as many times as long. Smaller: more bodies take the whole blow as rigid ones.
 constexpr int kMostReturns = 8;
+
+constexpr std::uint32_t kIsDeformable = 0x80000000;  ///< Added to the row of an object in BlowSum::other.
 
 /// Angular velocity of a dynamic body between steps, as an upper bound of its size [rad/s].
 double most_spin(const Bodies& b, std::uint32_t body) {
@@ -116,8 +120,7 @@ void add_point_contacts(WorldData& world, Real h) {
   const auto add = [&](std::uint32_t body, std::uint32_t object, Real force, DVec3 place) {
     const std::uint32_t row = body < world.blows.row_of.size() ? world.blows.row_of[body] : Tables::kNoRow;
     if (row == Tables::kNoRow || t.yielding[row].is_soft() || !(force > Real(0))) return;
-    // Objects are told from bodies by the highest bit.
-    add_blow(sum_of(world.blows.sums, row, object | 0x8000'0000U), force * h, place);
+    add_blow(sum_of(world.blows.sums, row, object | kIsDeformable), force * h, place);
   };
   const auto place_of = [&](std::uint32_t object, std::uint32_t particle) {
     return t.objects[object].origin + vector_cast<double>(t.particles.position[particle].x);

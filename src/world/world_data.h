@@ -212,7 +212,7 @@ struct Frame {
 /// What one other body or deformable gave to a body that yields, in the step so far.
 struct BlowSum {
   std::uint32_t yielding = 0;  ///< Row of Tables::yielding.
-  std::uint32_t other = 0;     ///< Row of the body; of a deformable, its row with the highest bit set.
+  std::uint32_t other = 0;     ///< Row of the body; of a deformable, its row with blows.cpp's kIsDeformable.
   Real impulse = Real(0);      ///< Sum along the normals of contacts [N s].
   Real pushed = Real(0);       ///< Largest impulse of one contact, with that of bouncing [N s].
   Real largest = Real(0);      ///< Largest impulse of one contact in one substep [N s].

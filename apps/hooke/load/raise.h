@@ -33,8 +33,8 @@ struct Equilibrium {
 /// Something that broke.
 struct LoadBreak {
   std::string object;
-  std::string what;  ///< "hook", "rope, segment 3", "cloth, point 17".
-  double force = 0;  ///< What it needed [N]; of a cloth its strain.
+  std::string what;  ///< "hook", "rope, segment 3", "cloth, point 17", "solid, point 4".
+  double force = 0;  ///< What it needed [N]; of a cloth its strain, of a solid its stress [Pa].
   double held = 0;   ///< Largest load that held before [N].
   double load = 0;   ///< Load at which it broke [N]; 0 if its weight did it.
   double share = 1;  ///< Share of the weight that acted.

@@ -42,6 +42,11 @@ std::vector<LoadBreak> breaks_of(const Simulation& simulation) {
                       .what = text_of("cloth, point %u", event.point),
                       .force = static_cast<double>(event.strain)});
   }
+  for (const SolidTearEvent& event : events.solid_tears) {
+    breaks.push_back({.object = name_of([&](const SceneObject& one) { return one.solid == event.solid; }),
+                      .what = text_of("solid, point %u", event.point),
+                      .force = static_cast<double>(event.stress)});
+  }
   return breaks;
 }
 

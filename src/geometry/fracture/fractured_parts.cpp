@@ -41,8 +41,7 @@ std::vector<Shell> shells_of(const SolidMesh& solid) {
       shells.emplace_back();
     }
     shells[shell].triangles.push_back(t);
-    for (const std::uint32_t v : t)
-      shells[shell].box = merge(shells[shell].box, solid.positions[v]);
+    for (const std::uint32_t v : t) shells[shell].box = merge(shells[shell].box, solid.positions[v]);
   }
   for (Shell& shell : shells) shell.volume = six_volumes(solid.positions, shell.triangles) / 6;
   return shells;

@@ -191,9 +191,8 @@ BoundingSphere vertex_sphere(std::span<const DVec3> points) {
 }
 
 DBox bounds_of(std::span<const DVec3> points) {
-  return std::accumulate(points.begin(), points.end(), DBox{}, [](const DBox& box, DVec3 p) {
-    return merge(box, p);
-  });
+  return std::accumulate(points.begin(), points.end(), DBox{},
+                         [](const DBox& box, DVec3 p) { return merge(box, p); });
 }
 
 OrientedBox box_along(const Matrix3<double>& axes, std::span<const DVec3> points) {

@@ -71,7 +71,6 @@ class ClothSolution {
   [[nodiscard]] DVec3 vector_at_end(const Spring& spring, std::span<const DVec3> v) const;
   [[nodiscard]] double tension(const Spring& spring, double length) const;
   [[nodiscard]] double energy(std::span<const DVec3> v) const;
-  void linearize();
   void linearize_bends();
   void linearize_freely();
   void restrict_to_freedom();

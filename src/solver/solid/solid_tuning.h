@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// Constants of tetrahedra that decide accuracy or robustness. docs/tuning.md says how to try another value.
+/// Constants of tetrahedra, and of stiff solids that are solved as a whole, that decide accuracy or
+/// robustness. docs/tuning.md says how to try another value.
 
 namespace hooke::solver {
 

@@ -82,7 +82,7 @@ std::size_t cell_at(const Fracture& fracture, DVec3 place) {
 }
 
 BodyDesc describe_cell(const Fracture& fracture, std::size_t index, const BodyDesc& whole) {
-  HOOKE_ASSERT(index < fracture.cells.size());
+  if (index >= fracture.cells.size()) return {};
   const base::FloatEnvironment environment;
   const FractureCell& cell = fracture.cells[index];
   const DQuat turn = rotation_of(whole);
@@ -104,7 +104,7 @@ BodyDesc describe_cell(const Fracture& fracture, std::size_t index, const BodyDe
 }
 
 HookDesc describe_bond(const Fracture& fracture, std::size_t index, const BodyDesc& whole, Real strength) {
-  HOOKE_ASSERT(index < fracture.bonds.size());
+  if (index >= fracture.bonds.size()) return {};
   const base::FloatEnvironment environment;
   const FractureBond& bond = fracture.bonds[index];
   const DQuat turn = rotation_of(whole);
@@ -172,6 +172,8 @@ Result<FracturedBody> add_fractured(World& world, const Fracture& fracture, cons
     made.bodies.push_back(body.value());
   }
   for (std::size_t i = 0; i < fracture.bonds.size(); ++i) {
+    if (std::max(fracture.bonds[i].a, fracture.bonds[i].b) >= made.bodies.size())
+      return error_of("bonds", i, {ErrorCode::kOutOfRange, "a, b", "name a cell that is not there"});
     HookDesc desc = describe_bond(fracture, i, whole, strength);
     desc.a.body = made.bodies[fracture.bonds[i].a];
     desc.b.body = made.bodies[fracture.bonds[i].b];

@@ -64,7 +64,8 @@ std::vector<DVec3> World::surface(BodyId id) const {
 std::vector<std::array<std::uint32_t, 3>> World::triangles(BodyId id) const {
   const world::Reading reading(data_);
   const Yielding* yielding = find_yielding(reading.tables(), id);
-  return yielding == nullptr ? std::vector<std::array<std::uint32_t, 3>>() : yielding->form->skin->triangles;
+  if (yielding == nullptr) return {};
+  return yielding->is_soft() ? triangles(soft_form(id)) : yielding->form->skin->triangles;
 }
 
 bool World::is_reshaped(BodyId id) const {
