@@ -491,9 +491,17 @@ bool is_whole(const PassSubstep& substep, std::uint32_t object) {
   return object < substep.solved_whole.size() && substep.solved_whole[object] != 0;
 }
 
-/// Whether an element meets a shape at one of its points, or nearly so.
-bool is_at_point(const ElementMeeting& meeting) {
-  return *std::max_element(meeting.weight.begin(), meeting.weight.end()) > kPointShare;
+/// Whether an element meets a shape at one of its points, or nearly so, and that point touches by itself. A
+/// needle may meet a face beside a point, and miss that.
+bool is_left_to_point(const MovingElement& element, const MovingShape& shape, const ElementMeeting& meeting,
+                      Real near) {
+  const auto most = std::max_element(meeting.weight.begin(), meeting.weight.end());
+  if (!(*most > kPointShare)) return false;
+  const auto heavy = static_cast<std::size_t>(most - meeting.weight.begin());
+  MovingElement point = {.count = element.count};
+  point.corner.fill(element.corner[heavy]);
+  point.displacement.fill(element.displacement[heavy]);
+  return meet(point, shape, near).met;
 }
 
 /// Whether a face of an object that is solved as a whole may be pressed by a shape in this substep.
@@ -518,10 +526,10 @@ void find_pressed_face(const state::Tables& t, const PassSubstep& substep, const
   MovingShape shape = pair.shape;
   bring_near(element, shape);
   const Real near = nearness_of(t, e);
-  const ElementMeeting meeting =
-      meet(element, shape, near + kNearFaceShare * finder.objects[pair.object].longest);
+  const Real reach = near + kNearFaceShare * finder.objects[pair.object].longest;
+  const ElementMeeting meeting = meet(element, shape, reach);
   if (!meeting.met || meeting.crossed || meeting.normal == Vec3{}) return;
-  if (pair.spans && is_at_point(meeting)) return;
+  if (pair.spans && is_left_to_point(element, shape, meeting, reach)) return;
   found.met = true;
   found.row = row_of(t, finder, pair, c, meeting, near);
   found.row.lever = meeting.place - (shape.pivot + meeting.share * shape.displacement);
@@ -541,7 +549,7 @@ void find_pass(const state::Tables& t, const PassSubstep& substep, const Passes&
   if (meeting.normal != Vec3{}) c.normal = meeting.normal;
   if (!meeting.met) c.free = std::max(c.free, pair.used + meeting.distance);
   if (!meeting.met || meeting.normal == Vec3{}) return;
-  if (pair.spans && is_whole(substep, pair.object) && is_at_point(meeting)) return;
+  if (pair.spans && is_whole(substep, pair.object) && is_left_to_point(element, shape, meeting, near)) return;
   found.met = true;
   found.share = meeting.share;
   found.row = row_of(t, finder, pair, c, meeting, near);
