@@ -187,6 +187,7 @@ class PassSearch {
     Passes::Pair pair = {.object = row, .collider = collider, .body = body, .first = first, .end = end};
     pair.friction = std::sqrt(t_.objects[row].friction * surface.friction);
     pair.spans = t_.bodies.traits[body].radius > object.longest;
+    pair.may_miss_points = t_.bodies.traits[body].inner_radius < (Real(1) - kPointShare) * object.longest;
     pair.inset = inset_of(body, object.longest);
     f_.pairs.push_back(pair);
   }
@@ -491,12 +492,13 @@ bool is_whole(const PassSubstep& substep, std::uint32_t object) {
   return object < substep.solved_whole.size() && substep.solved_whole[object] != 0;
 }
 
-/// Whether an element meets a shape at one of its points, or nearly so, and that point touches by itself. A
-/// needle may meet a face beside a point, and miss that.
-bool is_left_to_point(const MovingElement& element, const MovingShape& shape, const ElementMeeting& meeting,
-                      Real near) {
+/// Whether what meets an element at one of its points, or nearly so, is left to that point. What is so thin
+/// that it may miss the point, as a needle, is left to it only if the point touches, too.
+bool is_left_to_point(const Passes::Pair& pair, const MovingElement& element, const MovingShape& shape,
+                      const ElementMeeting& meeting, Real near) {
   const auto most = std::max_element(meeting.weight.begin(), meeting.weight.end());
-  if (!(*most > kPointShare)) return false;
+  if (!pair.spans || !(*most > kPointShare)) return false;
+  if (!pair.may_miss_points) return true;
   const auto heavy = static_cast<std::size_t>(most - meeting.weight.begin());
   MovingElement point = {.count = element.count};
   point.corner.fill(element.corner[heavy]);
@@ -529,7 +531,7 @@ void find_pressed_face(const state::Tables& t, const PassSubstep& substep, const
   const Real reach = near + kNearFaceShare * finder.objects[pair.object].longest;
   const ElementMeeting meeting = meet(element, shape, reach);
   if (!meeting.met || meeting.crossed || meeting.normal == Vec3{}) return;
-  if (pair.spans && is_left_to_point(element, shape, meeting, reach)) return;
+  if (is_left_to_point(pair, element, shape, meeting, reach)) return;
   found.met = true;
   found.row = row_of(t, finder, pair, c, meeting, near);
   found.row.lever = meeting.place - (shape.pivot + meeting.share * shape.displacement);
@@ -549,7 +551,7 @@ void find_pass(const state::Tables& t, const PassSubstep& substep, const Passes&
   if (meeting.normal != Vec3{}) c.normal = meeting.normal;
   if (!meeting.met) c.free = std::max(c.free, pair.used + meeting.distance);
   if (!meeting.met || meeting.normal == Vec3{}) return;
-  if (pair.spans && is_whole(substep, pair.object) && is_left_to_point(element, shape, meeting, near)) return;
+  if (is_whole(substep, pair.object) && is_left_to_point(pair, element, shape, meeting, near)) return;
   found.met = true;
   found.share = meeting.share;
   found.row = row_of(t, finder, pair, c, meeting, near);

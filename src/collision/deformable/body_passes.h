@@ -50,10 +50,12 @@ struct BodyPassFinder {
     std::uint32_t body = 0;
     std::uint32_t first = 0, end = 0;  ///< Rows of `candidates`.
     Real friction = Real(0);
-    Real inset = Real(0);    ///< How far within its surface the shape is kept from elements [m].
-    Real moves = Real(0);    ///< Upper bound of how far two of its points move relative to each other [m].
-    Real used = Real(0);     ///< Sum of these distances since candidates were listed [m].
-    bool spans = false;      ///< The body is larger than any element.
+    Real inset = Real(0);  ///< How far within its surface the shape is kept from elements [m].
+    Real moves = Real(0);  ///< Upper bound of how far two of its points move relative to each other [m].
+    Real used = Real(0);   ///< Sum of these distances since candidates were listed [m].
+    bool spans = false;    ///< The body is larger than any element.
+    /// The body is so thin that it may touch beside a point, nearer to it than kPointShare, and miss it.
+    bool may_miss_points = false;
     bool strays = false;     ///< Points or body do not move as they did when they were swept.
     MovingShape shape = {};  ///< From the object's origin, with its motion in this particle substep.
     Pose begin = {};         ///< Center of mass and rotation of the body when that began.
