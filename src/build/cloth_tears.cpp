@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace hooke::build {
@@ -225,6 +226,15 @@ void open_scored(std::uint32_t object, Tables& t) {
   t.objects[object].scored = still_joined<3>(scored, after);
 }
 
+/// The event of a point that gets the split of this number, of those made at once.
+ClothTearEvent event_of(const Tables& t, const Deformable& cloth, std::span<const std::uint32_t> index,
+                        std::uint32_t particle, std::size_t split) {
+  return {.cloth = t.cloth_slots.id_of(cloth.slot),
+          .point = index[particle - cloth.particles.first],
+          .added = cloth.particles.count + static_cast<std::uint32_t>(split),
+          .place = cloth.origin + vector_cast<double>(t.particles.position[particle].x)};
+}
+
 /// A point that a tear has reached.
 struct Reached {
   std::uint32_t particle = 0;  ///< Its row.
@@ -235,6 +245,7 @@ struct Reached {
 /// or another tear: no force goes through a point alone.
 void part_fans(std::uint32_t object, double time, std::vector<Reached>& reached, Tables& t,
                std::vector<ClothTearEvent>& events) {
+  if (reached.empty()) return;
   const Deformable& cloth = t.objects[object];
   const auto by_row = [](const Reached& a, const Reached& b) { return a.particle < b.particle; };
   std::stable_sort(reached.begin(), reached.end(), by_row);
@@ -247,13 +258,9 @@ void part_fans(std::uint32_t object, double time, std::vector<Reached>& reached,
     const std::size_t first = splits.size();
     append_splits(mesh, particle, parts_at<3>(mesh, particle, {}), splits);
     for (std::size_t k = first; k < splits.size(); ++k) {
-      const DVec3 offset = vector_cast<double>(t.particles.position[particle].x);
-      events.push_back({.cloth = t.cloth_slots.id_of(cloth.slot),
-                        .point = index[particle - cloth.particles.first],
-                        .added = cloth.particles.count + static_cast<std::uint32_t>(k),
-                        .place = cloth.origin + offset,
-                        .strain = static_cast<Real>(reached[i].strain),
-                        .time = time});
+      events.push_back(event_of(t, cloth, index, particle, k));
+      events.back().strain = static_cast<Real>(reached[i].strain);
+      events.back().time = time;
     }
   }
   if (!splits.empty()) split_cloth(object, mesh, splits, t);
@@ -280,14 +287,10 @@ void tear_cloth(std::uint32_t object, double time, Tables& t, std::vector<ClothT
     for (const std::uint32_t element : mesh.incidence.of(candidate.particle)) {
       for (const std::uint32_t p : mesh.corners[element]) near.push_back({p, candidate.strain});
     }
-    const DVec3 offset = vector_cast<double>(t.particles.position[candidate.particle].x);
-    events.push_back({.cloth = t.cloth_slots.id_of(cloth.slot),
-                      .point = index[candidate.particle - cloth.particles.first],
-                      .added = cloth.particles.count + static_cast<std::uint32_t>(splits.size()),
-                      .place = cloth.origin + offset,
-                      .strain = static_cast<Real>(candidate.strain),
-                      .time = time,
-                      .burst = splits.empty() && cloth.gas > 0});
+    events.push_back(event_of(t, cloth, index, candidate.particle, splits.size()));
+    events.back().strain = static_cast<Real>(candidate.strain);
+    events.back().time = time;
+    events.back().burst = splits.empty() && cloth.gas > 0;
     near.push_back({cloth.particles.end() + static_cast<std::uint32_t>(splits.size()), candidate.strain});
     splits.push_back(std::move(*split));
   }

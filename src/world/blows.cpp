@@ -27,8 +27,6 @@ constexpr double kRisk = 0.25;
 /// blows takes as many times as long. Smaller: more bodies take the whole blow as rigid ones.
 constexpr int kMostReturns = 8;
 
-constexpr std::uint32_t kIsDeformable = 0x80000000;  ///< Added to the row of an object in BlowSum::other.
-
 /// Angular velocity of a dynamic body between steps, as an upper bound of its size [rad/s].
 double most_spin(const Bodies& b, std::uint32_t body) {
   if (!is_dynamic(b, body)) return static_cast<double>(length(b.angular_velocity[body]));
@@ -105,7 +103,7 @@ void add_body_contacts(WorldData& world) {
         if (row == Tables::kNoRow || t.yielding[row].is_soft() || m.point_count == 0) continue;
         Real impulse = Real(0);
         for (int k = 0; k < block.point_count; ++k) impulse += block.point[k].impulse[lane];
-        BlowSum& sum = sum_of(world.blows.sums, row, other);
+        BlowSum& sum = sum_of(world.blows.sums, row, other | kIsBody);
         const Vec3 anchor = is_a ? m.point[0].anchor_a : m.point[0].anchor_b;
         add_blow(sum, impulse, state::pose_now(t.bodies, body).position + vector_cast<double>(anchor));
         sum.pushed = std::max(sum.pushed, block.pushed[lane]);
@@ -120,7 +118,7 @@ void add_point_contacts(WorldData& world, Real h) {
   const auto add = [&](std::uint32_t body, std::uint32_t object, Real force, DVec3 place) {
     const std::uint32_t row = body < world.blows.row_of.size() ? world.blows.row_of[body] : Tables::kNoRow;
     if (row == Tables::kNoRow || t.yielding[row].is_soft() || !(force > Real(0))) return;
-    add_blow(sum_of(world.blows.sums, row, object | kIsDeformable), force * h, place);
+    add_blow(sum_of(world.blows.sums, row, object), force * h, place);
   };
   const auto place_of = [&](std::uint32_t object, std::uint32_t particle) {
     return t.objects[object].origin + vector_cast<double>(t.particles.position[particle].x);

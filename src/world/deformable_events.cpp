@@ -16,8 +16,6 @@ namespace {
 
 using state::Tables;
 
-constexpr std::uint32_t kIsBody = 0x80000000;  ///< Added to the row of a body.
-
 bool anything_asks(const Tables& t) {
   return !t.objects.empty() && (t.any_deformable_reports || t.any_reports);
 }

@@ -63,10 +63,13 @@ struct StartOfBody {
   Vec3 torque = {};
 };
 
+/// Added to the row of a body where that of a deformable may stand, too.
+inline constexpr std::uint32_t kIsBody = 0x80000000;
+
 /// What a deformable and something that it touches have given each other in the step so far.
 struct DeformableTouch {
   std::uint32_t object = 0;  ///< Row of the deformable.
-  std::uint32_t other = 0;   ///< Row of the other deformable; of a body, its row with the highest bit set.
+  std::uint32_t other = 0;   ///< Row of the other deformable, or of a body, with kIsBody.
   std::uint32_t points = 0;  ///< Places that pressed in the last particle substep.
   bool meets = false;        ///< Some place is about to meet in this particle substep.
   Real closing = Real(0);    ///< Fastest speed of such places [m/s].
@@ -212,7 +215,7 @@ struct Frame {
 /// What one other body or deformable gave to a body that yields, in the step so far.
 struct BlowSum {
   std::uint32_t yielding = 0;  ///< Row of Tables::yielding.
-  std::uint32_t other = 0;     ///< Row of the body; of a deformable, its row with blows.cpp's kIsDeformable.
+  std::uint32_t other = 0;     ///< Row of the deformable, or of the body, with kIsBody.
   Real impulse = Real(0);      ///< Sum along the normals of contacts [N s].
   Real pushed = Real(0);       ///< Largest impulse of one contact, with that of bouncing [N s].
   Real largest = Real(0);      ///< Largest impulse of one contact in one substep [N s].

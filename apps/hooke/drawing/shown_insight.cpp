@@ -13,8 +13,7 @@ namespace hooke::app {
 
 namespace {
 
-constexpr double kArrowShare = 0.12;  ///< Length of the longest arrow over the distance of the camera.
-constexpr float kNumberSize = 12;     ///< Height of a number [pixels].
+constexpr float kNumberSize = 12;  ///< Height of a number [pixels].
 
 /// The names of all that can be shown.
 std::string list_choices() {
@@ -33,6 +32,24 @@ std::string names_of(const std::array<DebugRoute, N>& routes) {
                      byte(route.color.r), byte(route.color.g), byte(route.color.b));
   }
   return names;
+}
+
+/// Writes the numbers of a debug picture beside what they are of, with a shadow that makes them legible.
+void add_numbers(const Insight& insight, const Eye& eye, render::DrawList& list) {
+  for (const Insight::Text& text : insight.texts) {
+    const auto pixel = pixel_of(eye, text.place);
+    if (!pixel) continue;
+    render::DrawText drawn = {.x_px = static_cast<float>((*pixel)[0]) + 6,
+                              .y_px = static_cast<float>((*pixel)[1]) - 6,
+                              .size_px = kNumberSize,
+                              .color = {0, 0, 0},
+                              .text = text.text};
+    list.texts.push_back(drawn);
+    drawn.x_px -= 1;
+    drawn.y_px -= 1;
+    drawn.color = {text.color.r, text.color.g, text.color.b};
+    list.texts.push_back(std::move(drawn));
+  }
 }
 
 }  // namespace
@@ -66,27 +83,8 @@ void ShownInsight::add(const World& world, DVec3 origin, int width, int height, 
   if (!insight) return;
   const Eye eye = eye_of(camera, origin, width, height);
   add_insight(*insight, origin, static_cast<float>(2 * eye.half_height / height), list);
-  add_numbers(*insight, origin, width, height, list);
+  add_numbers(*insight, eye, list);
   add_legend(*insight, list);
-}
-
-void ShownInsight::add_numbers(const Insight& insight, DVec3 origin, int width, int height,
-                               render::DrawList& list) const {
-  const Eye eye = eye_of(render::make_orbit_camera(list.camera), origin, width, height);
-  for (const Insight::Text& text : insight.texts) {
-    const auto pixel = pixel_of(eye, text.place);
-    if (!pixel) continue;
-    render::DrawText drawn = {.x_px = static_cast<float>((*pixel)[0]) + 6,
-                              .y_px = static_cast<float>((*pixel)[1]) - 6,
-                              .size_px = kNumberSize,
-                              .color = {0, 0, 0},
-                              .text = text.text};
-    list.texts.push_back(drawn);  // A shadow, which makes it legible on anything.
-    drawn.x_px -= 1;
-    drawn.y_px -= 1;
-    drawn.color = {text.color.r, text.color.g, text.color.b};
-    list.texts.push_back(std::move(drawn));
-  }
 }
 
 void ShownInsight::add_legend(const Insight& insight, render::DrawList& list) const {

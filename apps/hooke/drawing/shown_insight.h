@@ -29,7 +29,6 @@ class ShownInsight {
   void add(const World& world, DVec3 origin, int width, int height, render::DrawList& list);
 
  private:
-  void add_numbers(const Insight& insight, DVec3 origin, int width, int height, render::DrawList& list) const;
   void add_legend(const Insight& insight, render::DrawList& list) const;
 
   InsightWish wish_;

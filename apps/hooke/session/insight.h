@@ -11,6 +11,9 @@
 
 namespace hooke::app {
 
+/// Length of the longest arrow over the distance of the camera.
+inline constexpr double kArrowShare = 0.12;
+
 /// What is to be seen of a world besides its objects.
 struct InsightWish {
   DebugDrawDesc desc = {.contacts = false};  ///< What; the lengths and full scales follow from what is found.

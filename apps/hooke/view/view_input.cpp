@@ -12,7 +12,6 @@ constexpr float kRadiansPerPixel = 0.006F;
 constexpr float kZoomPerNotch = 0.9F;
 constexpr float kZoomPerKey = 1.25F;
 constexpr float kLargestZoom = 4;
-constexpr double kArrowShare = 0.12;  ///< Length of the longest arrow over the distance of the camera.
 /// Radius [m] and speed [m/s] of a ball for each meter between the camera and what it turns about, within
 /// bounds: a scene of a doll's house and one of a town both want balls that fit.
 constexpr double kBallRadius = 0.015;

@@ -205,11 +205,9 @@ void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& t
 
 /// Whether anything but points of its own may load a cloth in this substep.
 bool may_be_loaded(const state::Tables& tables) {
-  const auto bodies = static_cast<std::uint32_t>(tables.bodies.count());
-  for (std::uint32_t body = 0; body < bodies; ++body) {
-    if (state::gives_way(tables.bodies, body)) return true;
-  }
-  return !tables.hooks.empty();
+  return !tables.hooks.empty() ||
+         std::any_of(tables.moving_bodies.begin(), tables.moving_bodies.end(),
+                     [&](std::uint32_t body) { return state::gives_way(tables.bodies, body); });
 }
 
 /// Drops what presses on other cloths, and counts the cloths that hold each body.

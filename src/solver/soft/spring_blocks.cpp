@@ -37,8 +37,7 @@ struct Source {
 };
 
 /// Colors one class: rows of a color share no particle. Returns them in the order of passes.
-std::vector<Place> color_class(const Source& source, SpringClass kind, MaterialNumbers& materials,
-                               const std::vector<SpringMaterial>& list) {
+std::vector<Place> color_class(const Source& source, SpringClass kind, MaterialNumbers& materials) {
   const state::Springs& springs = source.springs;
   std::vector<Place> places;
   std::vector<std::uint64_t> used(source.points.count, 0);
@@ -57,7 +56,7 @@ std::vector<Place> color_class(const Source& source, SpringClass kind, MaterialN
     const std::uint32_t material = materials.of(springs, row);
     places.push_back({kind, color, material, row});
   }
-  base::counting_sort(places, list.size(), [](const Place& place) { return place.material; });
+  base::counting_sort(places, materials.count(), [](const Place& place) { return place.material; });
   base::counting_sort(places, static_cast<std::size_t>(lone_color),
                       [](const Place& place) { return place.color; });
   return places;
@@ -120,7 +119,7 @@ void build_spring_blocks(std::span<const state::Deformable> objects, const state
   places.reserve(source.rows.count);
   for (const SpringClass kind : {SpringClass::kStretch, SpringClass::kShear, SpringClass::kBend,
                                  SpringClass::kTether, SpringClass::kLimit}) {
-    const std::vector<Place> of_class = color_class(source, kind, materials, blocks.materials);
+    const std::vector<Place> of_class = color_class(source, kind, materials);
     places.insert(places.end(), of_class.begin(), of_class.end());
   }
 

@@ -93,6 +93,7 @@ class MaterialNumbers {
   explicit MaterialNumbers(std::vector<SpringMaterial>& materials);
 
   [[nodiscard]] std::uint32_t of(const state::Springs& springs, std::size_t row);
+  [[nodiscard]] std::size_t count() const { return materials_.size(); }
 
  private:
   struct IsLess {
