@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <hwy/highway.h>
+#include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
@@ -39,6 +40,52 @@ constexpr BoxLanes kInFours([](unsigned i) { return i % 4; });
 /// ones.
 constexpr BoxLanes kByTwos([](unsigned i) { return i % 8 / 2 + (kWidth == 16 ? i / 8 * 8 : 0); });
 constexpr BoxLanes kInTwos([](unsigned i) { return i % 2; });
+
+/// By the bits of a mask of up to eight lanes: the numbers of its lanes, then some others.
+struct PackedLanes {
+  std::uint8_t of[256][8];
+
+  constexpr PackedLanes() : of{} {
+    for (unsigned bits = 0; bits < 256; ++bits) {
+      std::size_t count = 0;
+      for (unsigned lane = 0; lane < 8; ++lane) {
+        if ((bits >> lane & 1U) != 0) of[bits][count++] = static_cast<std::uint8_t>(lane);
+      }
+    }
+  }
+};
+constexpr PackedLanes kPackedLanes;
+
+/// Stores the lanes of a mask one after the other, then some more. Up to eight lanes are looked up in a table
+/// of our own: GCC copies that of hn::Compress to the stack each time, which was half of a search.
+template <class Words>
+class LanePacker {
+  using Word = hn::Vec<Words>;
+
+ public:
+  HWY_INLINE explicit LanePacker(hn::Mask<Words> mask) : packed_(packed(mask)) {}
+
+  HWY_INLINE void put(Word lanes, std::uint32_t* to) const {
+    if constexpr (kWidth > 8) {
+      hn::StoreU(hn::Compress(lanes, packed_), Words(), to);
+    } else {
+      hn::StoreU(hn::TableLookupLanes(lanes, hn::IndicesFromVec(Words(), packed_)), Words(), to);
+    }
+  }
+
+ private:
+  static HWY_INLINE auto packed(hn::Mask<Words> mask) {
+    if constexpr (kWidth > 8) {
+      return mask;
+    } else {
+      std::uint8_t bits[8];
+      hn::StoreMaskBits(Words(), mask, bits);
+      return hn::PromoteTo(Words(), hn::LoadU(hn::Rebind<std::uint8_t, Words>(), kPackedLanes.of[bits[0]]));
+    }
+  }
+
+  std::conditional_t<(kWidth > 8), hn::Mask<Words>, Word> packed_;
+};
 
 template <>
 struct BoxTests<Wide> {
@@ -101,11 +148,6 @@ struct BoxTests<Wide> {
     return all;
   }
 
-  /// Lanes of the mask one after the other, then some more.
-  static HWY_INLINE void put(Word lanes, hn::Mask<Words> mask, std::uint32_t* to) {
-    hn::StoreU(hn::Compress(lanes, mask), Words(), to);
-  }
-
   static HWY_INLINE Word lanes_of(const BoxLanes& lanes, int chunk) {
     return hn::BitCast(Words(), hn::LoadU(hn::RebindToSigned<Lanes>(), lanes.of + chunk * kWidth));
   }
@@ -136,12 +178,13 @@ struct BoxTests<Wide> {
       }
       if (hn::AllFalse(words, mask)) continue;
       const std::uint32_t at = to.count;
+      const LanePacker<Words> packer(mask);
       for (std::size_t k = 0; k < 2; ++k) {
-        put(hn::ShiftLeft<2>(spread(words, a.part.edge[k], kByFours, chunk)), mask, to.record[k] + at);
-        put(hn::ShiftLeft<2>(hn::LoadDup128(words, b.part.edge[k].data())), mask, to.record[2 + k] + at);
+        packer.put(hn::ShiftLeft<2>(spread(words, a.part.edge[k], kByFours, chunk)), to.record[k] + at);
+        packer.put(hn::ShiftLeft<2>(hn::LoadDup128(words, b.part.edge[k].data())), to.record[2 + k] + at);
       }
-      put(hn::Add(hn::Set(words, a.part.first_edge), lanes_of(kByFours, chunk)), mask, to.feature[0] + at);
-      put(hn::Add(hn::Set(words, b.part.first_edge), lanes_of(kInFours, chunk)), mask, to.feature[1] + at);
+      packer.put(hn::Add(hn::Set(words, a.part.first_edge), lanes_of(kByFours, chunk)), to.feature[0] + at);
+      packer.put(hn::Add(hn::Set(words, b.part.first_edge), lanes_of(kInFours, chunk)), to.feature[1] + at);
       to.count += static_cast<std::uint32_t>(hn::CountTrue(words, mask));
     }
   }
@@ -195,16 +238,18 @@ struct BoxTests<Wide> {
       }
       if (hn::AllFalse(words, mask)) continue;
       const std::uint32_t at = to.count;
-      put(hn::ShiftLeft<2>(by_twos(words, a.part.vertex, b.part.vertex)), mask, to.record[0] + at);
+      const LanePacker<Words> packer(mask);
+      packer.put(hn::ShiftLeft<2>(by_twos(words, a.part.vertex, b.part.vertex)), to.record[0] + at);
       for (std::size_t k = 0; k < 3; ++k) {
-        put(hn::ShiftLeft<2>(load_both(words, b.part.triangle[k], a.part.triangle[k], chunk)), mask,
-            to.record[1 + k] + at);
+        packer.put(hn::ShiftLeft<2>(load_both(words, b.part.triangle[k], a.part.triangle[k], chunk)),
+                   to.record[1 + k] + at);
       }
       const Word row = hn::And(lanes_of(kByTwos, chunk), hn::Set(words, 7));
-      put(hn::Add(set_both(a.part.first_vertex, b.part.first_vertex, chunk), row), mask, to.feature[0] + at);
-      put(hn::Add(set_both(b.part.first_triangle, a.part.first_triangle | SurfaceCandidates::kTurned, chunk),
+      packer.put(hn::Add(set_both(a.part.first_vertex, b.part.first_vertex, chunk), row), to.feature[0] + at);
+      packer.put(
+          hn::Add(set_both(b.part.first_triangle, a.part.first_triangle | SurfaceCandidates::kTurned, chunk),
                   lanes_of(kInTwos, chunk)),
-          mask, to.feature[1] + at);
+          to.feature[1] + at);
       to.count += static_cast<std::uint32_t>(hn::CountTrue(words, mask));
     }
   }

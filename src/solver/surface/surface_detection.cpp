@@ -90,10 +90,11 @@ void make_cages(const state::Tables& t, Real h, SurfaceContacts& c, SurfaceGroup
   });
 }
 
-SurfaceBox box_of_cage(const SurfaceContacts& c, std::uint32_t vertex, Real reach) {
+/// The box of where a vertex may go, and of what is within `reach` [m] of its expected path.
+SurfaceBox box_of_cage(const SurfaceContacts& c, std::uint32_t vertex, Real reserve, Real reach) {
   const Vec3 x = c.position[vertex].x;
   const SurfaceCage& cage = c.cage[vertex];
-  const Real room = cage.room + reach;
+  const Real room = std::max(cage.room, reach) + reserve;
   SurfaceBox box;
   const auto set = [&](std::size_t k, Real at, Real drift) {
     box.lower[k] = at + std::min(drift, Real(0)) - room;
@@ -114,25 +115,20 @@ SurfaceBox join(const SurfaceBox& a, const SurfaceBox& b) {
   return box;
 }
 
-SurfaceBox shrink(SurfaceBox box, Real by) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    box.lower[k] += by;
-    box.negated_upper[k] += by;
-  }
-  return box;
-}
-
 /// Makes the boxes of surfaces out of the cages of their vertices.
 class BoxFitter {
  public:
-  /// Vertices and faces reach `reach` [m], edges `edge_reach` beyond their cages.
-  BoxFitter(const SurfaceMesh& mesh, Real reach, Real edge_reach, SurfaceBoxes& boxes)
-      : mesh_(mesh), boxes_(boxes), shrinks_by_(reach - edge_reach), reach_(reach) {}
+  /// Vertices and faces reach `reach` [m] beyond their expected paths, edges `edge_reach`, both not more.
+  BoxFitter(const SurfaceMesh& mesh, Real reserve, Real reach, Real edge_reach, SurfaceBoxes& boxes)
+      : mesh_(mesh), boxes_(boxes), reserve_(reserve), reach_(reach), edge_reach_(edge_reach) {}
 
   void fit(const SurfaceContacts& c) {
     boxes_.by_vertex.resize(mesh_.vertex_count);
-    for (std::uint32_t i = 0; i < mesh_.vertex_count; ++i)
-      boxes_.by_vertex[i] = box_of_cage(c, mesh_.first_vertex + i, reach_);
+    boxes_.by_end.resize(mesh_.vertex_count);
+    for (std::uint32_t i = 0; i < mesh_.vertex_count; ++i) {
+      boxes_.by_vertex[i] = box_of_cage(c, mesh_.first_vertex + i, reserve_, reach_);
+      boxes_.by_end[i] = box_of_cage(c, mesh_.first_vertex + i, reserve_, edge_reach_);
+    }
     boxes_.parts.resize(mesh_.parts.size());
     boxes_.cells.resize(mesh_.cells.size());
     boxes_.nodes.resize(mesh_.nodes.size());
@@ -144,6 +140,10 @@ class BoxFitter {
  private:
   [[nodiscard]] const SurfaceBox& at(std::uint32_t vertex) const {
     return boxes_.by_vertex[vertex - mesh_.first_vertex];
+  }
+
+  [[nodiscard]] const SurfaceBox& end_at(std::uint32_t vertex) const {
+    return boxes_.by_end[vertex - mesh_.first_vertex];
   }
 
   /// Returns the box of the cell, of which that of the whole edges, triangles and vertices is a part.
@@ -163,8 +163,8 @@ class BoxFitter {
         boxes.edges.set(lane, SurfaceBox4::none());
         continue;
       }
-      const SurfaceBox edge = join(at(part.edge[0][lane]), at(part.edge[1][lane]));
-      boxes.edges.set(lane, shrink(edge, shrinks_by_));
+      const SurfaceBox edge = join(end_at(part.edge[0][lane]), end_at(part.edge[1][lane]));
+      boxes.edges.set(lane, edge);
       if (mesh_.is_rope()) all = join(all, edge);
     }
     for (std::size_t lane = 0; lane < 2; ++lane) {
@@ -195,8 +195,9 @@ class BoxFitter {
 
   const SurfaceMesh& mesh_;
   SurfaceBoxes& boxes_;
-  Real shrinks_by_;
+  Real reserve_;
   Real reach_;
+  Real edge_reach_;
 };
 
 /// All blocks but the last one are full.
@@ -540,10 +541,11 @@ void find_group_contacts(parallel::ThreadPool* pool, const state::Tables& tables
   for_items(pool, group.meshes.size(), [&](std::size_t i) {
     const std::uint32_t mesh = group.meshes[i];
     const Real radius = tables.objects[contacts.surfaces.meshes[mesh].object].surface.radius;
-    const Real reach = (Real(1) + kSurfaceMargin) * radius + Real(2) * group.reserve;
-    const Real edge_reach =
-        group.any_rope ? reach : (kEdgeShare + kEdgeMargin) * radius + Real(2) * group.reserve;
-    BoxFitter(contacts.surfaces.meshes[mesh], reach, edge_reach, contacts.boxes[mesh]).fit(contacts);
+    const Real reach = (Real(1) + kSurfaceMargin) * radius;
+    const Real edge_reach = group.any_rope ? reach : (kEdgeShare + kEdgeMargin) * radius;
+    BoxFitter(contacts.surfaces.meshes[mesh], Real(2) * group.reserve, reach, edge_reach,
+              contacts.boxes[mesh])
+        .fit(contacts);
   });
   if (group.found.size() < group.pairs.size()) group.found.resize(group.pairs.size());
   RowMaker maker(tables, contacts, group);

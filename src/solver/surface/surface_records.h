@@ -60,6 +60,7 @@ struct SurfaceBoxes {
   std::vector<SurfaceBox> cells;
   std::vector<SurfacePartBoxes> parts;
   std::vector<SurfaceBox> by_vertex;  ///< Scratch memory.
+  std::vector<SurfaceBox> by_end;     ///< Scratch memory: those of vertices as ends of edges.
 };
 
 /// A vertex and a triangle, or two edges, that may come near each other.
