@@ -20,7 +20,7 @@ from hook_scenes import HOOK_SCENES
 from paper_scenes import fig5, fig6, rollback_room, wall
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, at_point, body, box, cross, dot, fall,
                        fibonacci_points, ground, hull_of, prism, product, promise, rotated, scaled,
-                       scene, sector, slab, solid_mass, solid_moments, text_of, turn, weight_energy)
+                       scene, sector, slab, solid_mass, solid_moments, spot, text_of, turn, weight_energy)
 from rope_scenes import ROPE_SCENES
 from soft_contact_scenes import SOFT_CONTACT_SCENES
 from solid_scenes import SOLID_SCENES
@@ -187,10 +187,11 @@ def pool_break():
         "The cue ball breaks the rack at 8 m/s. Beside the table a ball starts to slide at 2 m/s: friction "
         "0.2 makes it roll after t = 2 v / (7 mu g) = 0.291 s, then at 5/7 v = 1.4286 m/s (Coriolis 1835).",
         5,
-        [-1.9, 1.5, 1.6], [0.2, 0, 0.1], {
-            "ground": {"color": [0.05, 0.15, 0.10], "friction": 0.2}, "oak": {"friction": 0.2}, "ivory": {
-            }, "sand": {"shininess": 120}, "clay": {"shininess": 120}, "moss": {"shininess": 120},
-            "steel": {"shininess": 120}
+        [-0.5, 0.75, 0.95], [0.52, 0, -0.05], {
+            "ground": {"color": [0.05, 0.15, 0.10], "friction": 0.2}, "oak": {"friction": 0.2},
+            "ivory": {"roughness": 0.12}, "sand": {"color": [0.75, 0.5, 0.06], "roughness": 0.12},
+            "clay": {"color": [0.5, 0.04, 0.03], "roughness": 0.12},
+            "moss": {"color": [0.02, 0.14, 0.35], "roughness": 0.12}, "steel": {"roughness": 0.15}
         }, [
             ground(),
             body("long_cushion", "oak", box(1.27 + 2 * cushion, cushion,
@@ -213,7 +214,9 @@ def pool_break():
                            for i, one in enumerate(["ivory", *tones])
                            for other in ["ivory", *tones][i:]] +
         [{"a": one, "b": "ground", "friction": 0.2} for one in ["ivory", *tones]] +
-        [{"a": one, "b": "oak", "friction": 0.2, "restitution": 0.7} for one in ["ivory", *tones]])
+        [{"a": one, "b": "oak", "friction": 0.2, "restitution": 0.7} for one in ["ivory", *tones]],
+        sky={"brightness": 0.5, "sun": 0.25},
+        lights=[spot([0.4, 2.4, 0.3], [0.4, 0, 0.06], [1, 0.9, 0.72], 8, 18, 34)])
 
 
 def newtons_cradle():

@@ -1,7 +1,7 @@
 """Scenes of ropes with what they are tied to; make_scenes.py writes them."""
 import math
 
-from scene_kit import DT, G, X, Z, add, at_point, body, box, fall, ground, promise, scaled, scene, turn
+from scene_kit import DT, G, HAIR, X, Z, add, at_point, body, box, fall, ground, promise, scaled, scene, turn
 
 
 def line(a, b, segments):
@@ -519,7 +519,7 @@ def hair_wind():
         "Sixty hairs of 30 cm, rods with EI = 2e-6 N m^2, stand clamped on a head that moves to and fro. They fall, "
         "swing after it and, after four seconds, blow to one side. Nearer than 2 cm they push each other away. A ball "
         "falls beside them.",
-        8, [0.42, 1.25, 0.8], [0, 1.12, 0], {"ground": {}, "skin": {}, "dark_hair": {}, "brown_hair": {}, "clay": {}, "slate": {}}, [
+        8, [0.3, 1.2, 0.72], [0, 1.11, 0], {"ground": {}, **HAIR, "clay": {}, "slate": {}}, [
             ground(),
             body("head", "skin", {"sphere": {"radius": head}}, [0, top, 0], "kinematic",
                  motion={"sine": {"amplitude": [0.06, 0, 0], "frequency_hz": 0.8}}),
@@ -533,7 +533,8 @@ def hair_wind():
         ],
         ropes=ropes,
         hooks=hooks,
-        timeline=[{"at_step": 240, "wind": {"velocity": [-4, 0, 1.5], "gust": 0.4}}])
+        timeline=[{"at_step": 240, "wind": {"velocity": [-4, 0, 1.5], "gust": 0.4}}],
+        sky={"sun_direction": [-0.75, -0.6, -0.25]}, fov_deg=42)
 
 
 def twisted_cable():

@@ -29,6 +29,9 @@ PALETTE = {  # linear
     "hemp": {"color": [0.45, 0.33, 0.18], "shininess": 4},
     "glass": {"color": [0.62, 0.72, 0.78], "roughness": 0.04, "transmission": 0.9},
 }
+# Full hair on a head whose skin it hides.
+HAIR = {"skin": {"color": [0.09, 0.05, 0.03], "roughness": 0.8}, "dark_hair": {"color": [0.13, 0.06, 0.025]},
+        "brown_hair": {"color": [0.22, 0.11, 0.045]}}
 TONES = ["sand", "clay", "moss", "slate"]  # of many like things
 
 # ---- Text -------------------------------------------------------------------------------------------------
@@ -217,7 +220,14 @@ def scene(title, description, seconds, eye, target, materials, bodies, expect, w
     made |= {key: more.pop(key) for key in ("meshes",) if key in more}
     made["materials"] = {name: PALETTE[name] | changes for name, changes in materials.items()}
     hooks = {"hooks": more.pop("hooks")} if "hooks" in more else {}
-    return made | more | {"bodies": bodies} | hooks | {"camera": {"eye": eye, "target": target}, "expect": expect}
+    camera = {"eye": eye, "target": target} | ({"fov_deg": more.pop("fov_deg")} if "fov_deg" in more else {})
+    return made | more | {"bodies": bodies} | hooks | {"camera": camera, "expect": expect}
+
+
+def spot(position, target, color, intensity, inner_deg, outer_deg):
+    """A light that shines from one place to another."""
+    return {"kind": "spot", "position": position, "direction": add(target, scaled(-1, position)), "color": color,
+            "intensity": intensity, "inner_deg": inner_deg, "outer_deg": outer_deg}
 
 
 def box(x, y, z):

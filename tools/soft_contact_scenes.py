@@ -2,7 +2,7 @@
 import math
 
 import rope_scenes
-from scene_kit import add, at_point, body, box, ground, promise, scaled, scene
+from scene_kit import HAIR, add, at_point, body, box, ground, promise, scaled, scene
 from solid_scenes import icosphere
 
 
@@ -96,7 +96,10 @@ def hair_on_shoulders():
         "Hair on shoulders",
         "Sixty hairs of 42 cm fall on a cape that lies on shoulders, and rest on it. Hair pushes hair away, but touches "
         "the cape strand by strand.",
-        4, [0.7, 1.7, 1.2], [0, 1.4, 0], {"ground": {}, "skin": {}, "slate": {}, "brown_hair": {}, "dark_hair": {}, "rose": {"friction": 0.6}}, [
+        4, [0.62, 1.6, 1.05], [0, 1.38, 0], {
+            "ground": {}, "skin": HAIR["skin"], "slate": {}, "brown_hair": HAIR["brown_hair"], "dark_hair": HAIR["dark_hair"],
+            "rose": {"color": [0.35, 0.03, 0.06], "roughness": 0.9, "sheen": 0.6, "friction": 0.6}
+        }, [
             ground(),
             body("head", "skin", {"sphere": {"radius": head}}, [0, top, 0], "static"),
             body("shoulders", "slate", {"capsule": {"radius": 0.09, "half_height": 0.16}}, [0, 1.34, 0], "static",
