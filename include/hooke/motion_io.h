@@ -38,11 +38,41 @@ struct MotionMaterial {
   std::string name = {};                            ///< Name; need not be unique.
   std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear red, green and blue, each in [0, 1].
   float opacity = 1.0f;                             ///< Opacity; 1 hides what is behind. [0, 1]
-  float shininess = 16.0f;                          ///< Blinn-Phong exponent; formats with a roughness get
-                                                    ///< (2 / (shininess + 2))^(1/4).
-  std::shared_ptr<const MotionImage> image = {};    ///< Image that the color multiplies; null for none.
-  bool cutout = false;                              ///< Whether the image's alpha cuts holes.
-  bool two_sided = false;                           ///< Whether back faces are seen.
+  float shininess = 16.0f;                          ///< Blinn-Phong exponent.
+  std::optional<float> roughness = {};  ///< 0 for a mirror, 1 for chalk; (2 / (shininess + 2))^(1/4) without
+                                        ///< it. [0, 1]
+  float metalness = 0.0f;               ///< 0 for an insulator, 1 for a metal. [0, 1]
+  float transmission = 0.0f;            ///< Share of the light that goes through, as through glass. [0, 1]
+  std::shared_ptr<const MotionImage> image = {};  ///< Image that the color multiplies; null for none.
+  /// Normals in the frame of the surface: red to the right of the texture, green up, blue outward.
+  std::shared_ptr<const MotionImage> normal_map = {};
+  float normal_scale = 1.0f;  ///< Factor of the red and the green of `normal_map`. [-100, 100]
+  /// Image whose green multiplies the roughness, and its blue the metalness; null for none.
+  std::shared_ptr<const MotionImage> roughness_map = {};
+  bool cutout = false;     ///< Whether the image's alpha cuts holes.
+  bool two_sided = false;  ///< Whether back faces are seen.
+};
+
+/// A light, which does not move.
+struct MotionLight {
+  /// From where its light comes.
+  enum class Kind : std::uint8_t {
+    kDirectional,  ///< From far away, along `direction`.
+    kPoint,        ///< From `position`, to all sides.
+    kSpot,         ///< From `position`, within a cone about `direction`.
+  };
+
+  std::string name = {};                            ///< Name; writers make names unique.
+  Kind kind = Kind::kPoint;                         ///< From where its light comes.
+  DVec3 position = {};                              ///< Of a point and a spot [m].
+  Vec3 direction = {Real(0), Real(-1), Real(0)};    ///< In which its light goes; of any length but zero.
+  std::array<float, 3> color = {1.0f, 1.0f, 1.0f};  ///< Linear red, green and blue, each in [0, 1].
+  /// Luminance of a white matte surface that faces it, of a point and a spot at 1 m, from where it falls off
+  /// by the square [cd/m^2]. 1 is the white of a screen that shows light as it is. Not negative.
+  float strength = 1.0f;
+  float inner_angle = 0.35f;  ///< Half angle of a spot within which it is as bright as its middle [rad].
+  float outer_angle = 0.52f;  ///< Half angle beyond which there is none. (inner_angle, pi / 2]
+  bool shadows = true;        ///< Whether things keep its light from one another; only .usda tells it.
 };
 
 /// Triangles of a body's piece, or of a deformable object at its first frame. Each vertex belongs to one
@@ -128,6 +158,11 @@ class MotionRecording {
 
   /// Sets the gravity that a .usda file tells [m/s^2]; (0, -9.81, 0) by default.
   void set_gravity(Vec3 gravity);
+  /// Adds a light. Only .glb and .usda have lights. Errors: a number that is out of range or not finite.
+  Result<void> add_light(MotionLight light);
+  /// Sets the luminance of the sky, red, green and blue, which lights from all sides [cd/m^2]. Only .usda has
+  /// it. Errors: a number that is negative or not finite.
+  Result<void> set_sky(std::array<float, 3> luminance);
   /// Adds a material and returns its number.
   std::uint32_t add_material(MotionMaterial material);
   /// Adds a mesh and returns its number. Errors: an index, a part or a material out of range,

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+import zlib
 
 import cli_test
 from cli_test import Program
@@ -59,6 +60,21 @@ MIXED = {
                                                      "shape": {"sphere": {"radius": 0.1}}}]}},
                  {"at_step": 40, "remove": "goes"}],
 }
+# What a picture shows beside color.
+LOOKS = {
+    "version": 1, "seconds": 0.2,
+    "sky": {"sun": 0.5, "sun_direction": [0.6, -0.8, 0]},
+    "lights": [{"kind": "spot", "position": [1, 3, 2], "direction": [1, -1, 2], "intensity": 4, "inner_deg": 10,
+                "outer_deg": 30}, {"kind": "point", "position": [0, 2, 0], "color": [1, 0.5, 0.25], "intensity": 2,
+                                   "shadows": False}, {"kind": "directional", "direction": [0, 0, 1]}],
+    "materials": {"brass": {"color": [0.9, 0.7, 0.3], "metalness": 1, "roughness": 0.25, "normal_map": "bumps.png",
+                            "normal_scale": -0.5, "roughness_map": "worn.png"},
+                  "pane": {"transmission": 0.75, "roughness": 0}},
+    "bodies": [{"name": "ball", "material": "brass", "shape": {"sphere": {"radius": 0.2}}, "position": [0, 1, 0]},
+               {"name": "window", "material": "pane", "shape": {"box": {}}, "position": [2, 1, 0]}],
+    "cloths": [{"name": "mail", "material": "brass", "corner": [-1, 3, 0], "width": 1, "height": 1, "columns": 5,
+                "rows": 5, "pins": [{"point": 0}, {"point": 4}]}],
+}
 FRAMES = 31  # of one second at 30 a second
 FRAME_OF_COMING, FRAME_OF_GOING = 11, 21  # the first with the one, the first without the other
 
@@ -72,12 +88,23 @@ class Export(Program):
         super().setUp()
         (self.folder / "flag.png").write_bytes((cli_test.PROJECT / "scenes/models/flag.png").read_bytes())
 
+    def picture(self, name, gray):
+        """Writes an image of 4 x 4 pixels."""
+        rows = b"".join(b"\0" + bytes(30 * (x + y) + (0 if gray else 20 * c) for x in range(4) for c in range(3))
+                        for y in range(4))
+
+        def chunk(kind, data):
+            return len(data).to_bytes(4, "big") + kind + data + zlib.crc32(kind + data).to_bytes(4, "big")
+        header = (4).to_bytes(4, "big") * 2 + bytes((8, 2, 0, 0, 0))
+        (self.folder / name).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
+                                         + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
     def export(self, output, *words, scene=None, code=0):
         name = self.scene(MIXED if scene is None else scene)
         return self.hooke("export", name, "-o", output, *words, code=code)
 
     def frame(self, number):
-        return obj(self.folder / "seq" / f"frame_{number + 1:04d}.obj")
+        return obj(self.folder / "seq" / f"frame_{number:04d}.obj")
 
     def assert_near(self, points, wanted, tolerance, what):
         self.assertEqual(len(points), len(wanted), what)
@@ -308,8 +335,70 @@ class Files(Export):
         self.assertEqual(glb.accessor(flag["attributes"]["TEXCOORD_0"])[::62], [(0, 0), (1, 1)])
         numbers = Usda(self.folder / "x.usda").value("/World/flag", "primvars:st", 0)
         self.assertEqual((numbers[:2], numbers[-2:]), ([0, 1], [1, 0]))
-        flag = (self.folder / "x_0001.obj").read_text().split("o flag\n")[1]
+        flag = (self.folder / "x_0000.obj").read_text().split("o flag\n")[1]
         self.assertEqual(flag[flag.index("vt "):].split("\n")[0], "vt 0 1")
+
+    def test_files_carry_metals_relief_glass_and_lights(self):
+        self.picture("bumps.png", gray=True)
+        self.picture("worn.png", gray=False)
+        self.export("x.glb", scene=LOOKS)
+        glb = Glb(self.folder / "x.glb")
+        made = {material["name"]: material for material in glb.json["materials"]}
+        brass = made["brass"]["pbrMetallicRoughness"]
+        self.assertEqual((brass["metallicFactor"], round(brass["roughnessFactor"], 5)), (1, 0.25))
+        self.assertEqual(made["brass"]["normalTexture"]["scale"], -0.5)
+        self.assertIn("index", brass["metallicRoughnessTexture"])
+        self.assertEqual(set(self.tangents(glb, "mail")), {(1, 0, 0, 1)})  # Its columns go along x.
+        self.assertEqual(made["pane"]["extensions"]["KHR_materials_transmission"]["transmissionFactor"], 0.75)
+        self.assertEqual(set(glb.json["extensionsUsed"]), {"KHR_lights_punctual", "KHR_materials_transmission"})
+        lights = glb.json["extensions"]["KHR_lights_punctual"]["lights"]
+        self.assertEqual([light["type"] for light in lights], ["directional", "spot", "point", "directional"])
+        # A light of intensity 1 makes white as bright as the sun of 1 does; candela at 1 m are lux.
+        self.assertAlmostEqual(lights[0]["intensity"], 1.5 * math.pi * 0.5, places=4)
+        self.assertAlmostEqual(lights[1]["intensity"], 1.5 * math.pi * 4, places=4)
+        self.assertAlmostEqual(lights[1]["spot"]["outerConeAngle"], math.radians(30), places=6)
+        self.assertAlmostEqual(lights[1]["spot"]["innerConeAngle"], math.radians(10), places=6)
+        nodes = [node for node in glb.json["nodes"] if "KHR_lights_punctual" in node.get("extensions", {})]
+        self.assertEqual([node["extensions"]["KHR_lights_punctual"]["light"] for node in nodes], [0, 1, 2, 3])
+        for node, wanted in zip(nodes, [(0.6, -0.8, 0), (1, -1, 2), None, (0, 0, 1)]):
+            if wanted is not None:
+                unit = [x / math.hypot(*wanted) for x in wanted]
+                self.assertLess(distance(rotate(node["rotation"], (0, 0, -1)), unit), 1e-6, node)
+        self.assertEqual(nodes[1]["translation"], [1, 3, 2])
+
+    def tangents(self, glb, name):
+        primitive = glb.json["meshes"][glb.json["nodes"][glb.roots()[name]]["mesh"]]["primitives"][0]
+        self.assertIn("TANGENT", primitive["targets"][0])
+        return glb.accessor(primitive["attributes"]["TANGENT"])
+
+    def test_relief_of_heights_becomes_normals(self):
+        self.picture("bumps.png", gray=True)
+        self.picture("worn.png", gray=False)
+        self.export("seq/x.obj", "--seconds", 0.1, scene=LOOKS)
+        library = (self.folder / "seq/x.mtl").read_text()
+        self.assertIn("norm x_bumps.png", library)
+        self.assertRegex(library, r"Pr 0.25\nPm 1\n")
+        self.assertNotEqual((self.folder / "seq/x_bumps.png").read_bytes(), (self.folder / "bumps.png").read_bytes())
+
+    def test_a_usda_has_the_same_look(self):
+        self.picture("bumps.png", gray=True)
+        self.picture("worn.png", gray=False)
+        self.export("x.usda", scene=LOOKS)
+        usda = Usda(self.folder / "x.usda")
+        brass, lights = "/World/Looks/brass/", "/World/Lights/"
+        self.assertEqual(usda.value(brass + "normals", "inputs:scale", 0), [-1, -1, 2, 1])
+        self.assertEqual(usda.value(brass + "normals", "inputs:bias", 0), [0.5, 0.5, -1, 0])
+        self.assertEqual(usda.value(brass + "finish", "inputs:scale", 0), [1, 0.25, 1, 1])
+        self.assertEqual(usda.value("/World/Looks/pane/surface", "inputs:opacity", 0), [0.25])
+        for name, intensity in (("sun", 0.5), ("light", 4 * 4), ("light_2", 2 * 4), ("light_3", 1)):
+            got = usda.value(lights + name, "inputs:intensity", 0)[0]
+            self.assertAlmostEqual(got, 1.5 * math.pi * intensity, places=3)
+        self.assertAlmostEqual(usda.value(lights + "light", "inputs:shaping:cone:angle", 0)[0], 30, places=4)
+        self.assertAlmostEqual(usda.value(lights + "light", "inputs:shaping:cone:softness", 0)[0], 2 / 3, places=5)
+        w, *xyz = usda.value(lights + "light", "xformOp:orient", 0)
+        aim = [x / math.sqrt(6) for x in (1, -1, 2)]
+        self.assertLess(distance(rotate((*xyz, w), (0, 0, -1)), aim), 1e-5)
+        self.assertIn("DomeLight", (self.folder / "x.usda").read_text())
 
     def test_names_with_commas_and_quotes_stay_in_their_column(self):
         self.export("x.csv")
@@ -336,7 +425,7 @@ class Files(Export):
     def test_an_obj_sequence_names_its_materials_and_frames(self):
         self.export("seq/frame_%04d.obj", "--seconds", 0.1)
         names = sorted(path.name for path in (self.folder / "seq").iterdir())
-        self.assertEqual(names, ["frame.mtl", *[f"frame_000{i}.obj" for i in range(1, 5)], "frame_flag.png"])
+        self.assertEqual(names, ["frame.mtl", *[f"frame_000{i}.obj" for i in range(4)], "frame_flag.png"])
         library = (self.folder / "seq/frame.mtl").read_text()
         self.assertIn("map_Kd frame_flag.png", library)
         for path in (self.folder / "seq").glob("*.obj"):
@@ -350,7 +439,7 @@ class Files(Export):
 
     def test_an_obj_without_a_place_for_the_number_gets_one(self):
         self.export("x.obj", "--seconds", 0.1)
-        self.assertIn("x_0001.obj", self.files())
+        self.assertIn("x_0000.obj", self.files())
         self.assertIn("x.mtl", self.files())
 
 
@@ -449,11 +538,14 @@ class Validator(NodeReader):
     def test_the_khronos_validator_finds_no_error_and_no_warning(self):
         self.export("mixed.glb")
         self.export("caches/")
+        self.picture("bumps.png", gray=True)
+        self.picture("worn.png", gray=False)
+        self.export("looks.glb", scene=LOOKS)
         self.export("few.glb", "--morph-targets", 5, "--tolerance", 0.01)
         names = ["showcase", "ragdolls", "jelly_model", "hair_wind", "trampoline_particles"]
         for name in names:
             self.hooke("export", f"scenes/{name}.json", "-o", f"{name}.glb", "--seconds", 0.3)
-        files = ["mixed.glb", "caches/bodies.glb", "few.glb", *[f"{name}.glb" for name in names]]
+        files = ["mixed.glb", "looks.glb", "caches/bodies.glb", "few.glb", *[f"{name}.glb" for name in names]]
         reports = self.node("validate_glb.js", *files)
         self.assertEqual([report["file"] for report in reports], files)
         for report in reports:

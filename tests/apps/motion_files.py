@@ -33,7 +33,8 @@ class Glb:
         return self.read[number]
 
     def roots(self):
-        return {self.json["nodes"][i]["name"]: i for i in self.json["scenes"][0]["nodes"]}
+        nodes = self.json["nodes"]  # Lights have no vertices.
+        return {nodes[i]["name"]: i for i in self.json["scenes"][0]["nodes"] if "extensions" not in nodes[i]}
 
     def channels(self, node):
         for animation in self.json.get("animations", []):

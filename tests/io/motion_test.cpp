@@ -223,6 +223,24 @@ TEST_SUITE("io/motion") {
     CHECK(motion.add_mesh(triangle(material)));
   }
 
+  TEST_CASE("a recording refuses lights that shine nowhere or not at all like light") {
+    const test::TemporaryFolder folder;
+    MotionRecording motion = MotionRecording::create(folder / "x.glb", 30).value();
+    using Kind = MotionLight::Kind;
+    CHECK_FALSE(motion.add_light({.direction = {}}));
+    CHECK_FALSE(motion.add_light({.position = {0, static_cast<double>(kNaN), 0}}));
+    CHECK_FALSE(motion.add_light({.color = {1, -1, 1}}));
+    CHECK_FALSE(motion.add_light({.strength = -1}));
+    CHECK_FALSE(motion.add_light({.kind = Kind::kSpot, .inner_angle = 0.5F, .outer_angle = 0.5F}));
+    CHECK_FALSE(motion.add_light({.kind = Kind::kSpot, .outer_angle = 1.6F}));
+    CHECK_FALSE(motion.set_sky({1, 1, -1}));
+    CHECK(motion.data().lights.empty());
+    CHECK_FALSE(motion.data().sky);
+    CHECK(motion.add_light({.kind = Kind::kSpot}));
+    CHECK(motion.set_sky({0, 1, 2}));
+    CHECK(motion.data().lights.size() == 1);
+  }
+
   TEST_CASE("what cannot be begun is an error that says why, and leaves no file") {
     const test::TemporaryFolder folder;
     CHECK(MotionRecording::create(folder / "x.fbx", 30).error().code == ErrorCode::kOutOfRange);

@@ -49,19 +49,22 @@ std::vector<std::byte> png_of(const render::Image& image) {
 
 }  // namespace
 
-std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path, const ImageBytes& bytes) {
-  const auto [entry, is_new] = images_.try_emplace({path, bytes});
+std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path, const ImageBytes& bytes,
+                                                       ImageUse use) {
+  const auto [entry, is_new] = images_.try_emplace({path, bytes, use});
   if (!is_new) return entry->second;
   auto image = bytes ? render::decode_image(*bytes, path) : render::load_image(path);
   if (!image) {
     warnings_.push_back(to_line(image.error()));
     return nullptr;
   }
-  entry->second = std::make_shared<const render::Image>(std::move(image).value());
+  render::Image seen = use == ImageUse::kNormals ? render::normals_of(image.value()) : image.value();
+  const bool is_changed = seen.pixels != image.value().pixels;
+  entry->second = std::make_shared<const render::Image>(std::move(seen));
   auto file = std::make_shared<MotionImage>();
   file->name = fs::path(path).filename().string();
   file->bytes = bytes ? *bytes : read_bytes(path);
-  if (!is_portable(file->bytes)) {
+  if (is_changed || !is_portable(file->bytes)) {
     file->name = fs::path(path).stem().string() + ".png";
     file->bytes = png_of(*entry->second);
   }
@@ -73,10 +76,19 @@ std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path, 
   return entry->second;
 }
 
+std::shared_ptr<const MotionImage> MotionLooks::file_of(const render::Image* image) const {
+  const auto file = files_.find(image);
+  return file == files_.end() ? nullptr : file->second;
+}
+
 std::uint32_t MotionLooks::find(MotionRecording& motion, const Finish& finish, const std::string& name,
                                 bool two_sided) {
   const render::Color c = finish.color;
-  const Key key = {name, c.r, c.g, c.b, finish.opacity, finish.shininess, finish.texture.get(), two_sided};
+  const Key key = {name,
+                   {c.r, c.g, c.b, finish.opacity, finish.shininess, finish.roughness, finish.metalness,
+                    finish.transmission, finish.relief},
+                   {finish.texture.get(), finish.normals.get(), finish.finish.get()},
+                   two_sided};
   const auto [entry, is_new] = numbers_.try_emplace(key);
   if (!is_new) return entry->second;
   MotionMaterial material;
@@ -84,11 +96,15 @@ std::uint32_t MotionLooks::find(MotionRecording& motion, const Finish& finish, c
   material.color = render::linear_of(c);
   material.opacity = finish.opacity;
   material.shininess = finish.shininess;
+  material.roughness = std::clamp(finish.roughness, 0.0F, 1.0F);
+  material.metalness = std::clamp(finish.metalness, 0.0F, 1.0F);
+  material.transmission = std::clamp(finish.transmission, 0.0F, 1.0F);
   material.two_sided = two_sided;
-  if (const auto file = files_.find(finish.texture.get()); file != files_.end()) {
-    material.image = file->second;
-    material.cutout = finish.texture->channels == 4;
-  }
+  material.image = file_of(finish.texture.get());
+  material.cutout = material.image != nullptr && finish.texture->channels == 4;
+  material.normal_map = file_of(finish.normals.get());
+  material.normal_scale = finish.relief;
+  material.roughness_map = file_of(finish.finish.get());
   entry->second = motion.add_material(std::move(material));
   return entry->second;
 }

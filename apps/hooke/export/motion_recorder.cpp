@@ -3,9 +3,13 @@
 #include "hooke/clock.h"
 #include "hooke/scene_path.h"
 
+#include "render/batches.h"
+#include "render/sky_light.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace hooke::app {
@@ -14,6 +18,7 @@ namespace {
 
 constexpr float kGroundSize = 50;   ///< Half the side of the square that shows a half-space [m].
 constexpr std::size_t kCrowd = 64;  ///< Number of bodies beyond which balls have 320 triangles, not 5120.
+constexpr float kRadians = std::numbers::pi_v<float> / 180;  ///< Of a degree.
 const Finish kIron = {.color = {0.30F, 0.31F, 0.33F}};
 
 using Kind = SceneObject::Kind;
@@ -43,6 +48,18 @@ MotionState mix(const MotionState& a, const MotionState& b, double part) {
       .angular_velocity = mix(a.angular_velocity, b.angular_velocity, part),
       .energy = {number(a.energy.kinetic, b.energy.kinetic), number(a.energy.potential, b.energy.potential),
                  number(a.energy.elastic, b.energy.elastic)}};
+}
+
+MotionLight::Kind kind_of(SceneLight::Kind kind) {
+  switch (kind) {
+    case SceneLight::Kind::kDirectional:
+      return MotionLight::Kind::kDirectional;
+    case SceneLight::Kind::kSpot:
+      return MotionLight::Kind::kSpot;
+    case SceneLight::Kind::kPoint:
+      break;
+  }
+  return MotionLight::Kind::kPoint;
 }
 
 /// Returns the description that an object was made from, or null.
@@ -141,9 +158,8 @@ Result<void> MotionRecorder::record(const Simulation& simulation, double time) {
 Result<MotionRecorder::Entry*> MotionRecorder::find_entry(const Simulation& simulation,
                                                           const SceneObject& object, const Taken& now) {
   if (const auto known = entries_.find(now.key); known != entries_.end()) return &known->second;
-  // Recordings have no place for relief and finish.
   const auto load = [this](const std::string& path, const ImageBytes& bytes, ImageUse use) {
-    return use == ImageUse::kColor ? looks_.load(path, bytes) : nullptr;
+    return looks_.load(path, bytes, use);
   };
   const Figure figure = make_figure(simulation, object, load, geometries_);
   if (object.kind == Kind::kBody) {
@@ -267,10 +283,46 @@ Result<std::uint32_t> MotionRecorder::add_body(const Simulation& simulation, con
   return motion_.add_object(std::move(body));
 }
 
+/// Adds the sun, the sky and the lights, as bright as a picture of the scene shows them.
+Result<void> MotionRecorder::add_lights(const Scene& scene) {
+  render::DrawList list;
+  list.sun.intensity = static_cast<float>(scene.sky.sun);
+  list.sky.brightness = static_cast<float>(scene.sky.brightness);
+  const render::SkyLight light = render::sky_light_of(list);
+  std::array<float, 3> luminance = {};
+  for (std::size_t i = 0; i < 3; ++i)
+    luminance[i] = light.ambient * 0.5F * (light.zenith[i] + light.horizon[i]);
+  if (auto set = motion_.set_sky(luminance); !set) return set;
+  const float sun = render::kSunStrength * list.sun.intensity;
+  if (sun > 0) {
+    auto added = motion_.add_light({.name = "sun",
+                                    .kind = MotionLight::Kind::kDirectional,
+                                    .direction = scene.sky.sun_direction,
+                                    .color = render::linear_of(list.sun.color),
+                                    .strength = sun});
+    if (!added) return added;
+  }
+  for (const SceneLight& one : scene.lights) {
+    const auto radians = [](Real degrees) { return static_cast<float>(degrees) * kRadians; };
+    auto added = motion_.add_light({.name = "light",
+                                    .kind = kind_of(one.kind),
+                                    .position = one.position,
+                                    .direction = one.direction,
+                                    .color = one.color,
+                                    .strength = render::kSunStrength * static_cast<float>(one.intensity),
+                                    .inner_angle = radians(one.inner_deg),
+                                    .outer_angle = radians(one.outer_deg),
+                                    .shadows = one.shadows});
+    if (!added) return added;
+  }
+  return {};
+}
+
 /// Adds the hooks of bodies as they are in the first frame.
 Result<void> MotionRecorder::add_joints(const Simulation& simulation) {
   has_joints_ = true;
   motion_.set_gravity(simulation.world().desc().gravity);
+  if (auto added = add_lights(simulation.scene()); !added) return added;
   for (const SceneObject& object : simulation.objects()) {
     if (object.kind != Kind::kHook || object.broken) continue;
     const SceneHook* desc = object.path.find("hooks[") != std::string::npos

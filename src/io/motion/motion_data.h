@@ -4,6 +4,7 @@
 
 #include "process/new_file.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -36,6 +37,8 @@ struct MotionData {
   std::string path = {};
   double frames_per_second = 0;
   Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< [m/s^2]
+  std::vector<MotionLight> lights = {};
+  std::optional<std::array<float, 3>> sky = {};  ///< Luminance [cd/m^2].
   std::vector<MotionMaterial> materials = {};
   std::vector<MotionMesh> meshes = {};
   std::vector<MotionObject> objects = {};

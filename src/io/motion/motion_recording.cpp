@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 #include <system_error>
 #include <type_traits>
 #include <unistd.h>
@@ -33,6 +34,10 @@ bool is_finite(const MotionState& state) {
 
 bool is_finite(const std::array<float, 3>& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+bool is_luminance(float value) {
+  return std::isfinite(value) && value >= 0;
 }
 
 /// Returns what is wrong with a mesh, or an empty text.
@@ -175,6 +180,32 @@ Result<MotionRecording> MotionRecording::create(const std::string& path, double 
 
 void MotionRecording::set_gravity(Vec3 gravity) {
   data_->gravity = gravity;
+}
+
+Result<void> MotionRecording::add_light(MotionLight light) {
+  const auto finite = [](DVec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  const DVec3 direction = vector_cast<double>(light.direction);
+  const bool is_spot = light.kind == MotionLight::Kind::kSpot;
+  const bool is_cone = light.inner_angle >= 0 && light.inner_angle < light.outer_angle &&
+                       light.outer_angle <= std::numbers::pi_v<float> / 2;
+  const bool is_color = std::all_of(light.color.begin(), light.color.end(), is_luminance);
+  if (!finite(light.position) || !finite(direction) || length(direction) == 0 || !is_color ||
+      !is_luminance(light.strength) || (is_spot && !is_cone)) {
+    return Error{
+        ErrorCode::kOutOfRange, "light '" + light.name + "'",
+        "needs a finite position, a direction that is not zero, a color and a strength of 0 or more, "
+        "and 0 <= inner_angle < outer_angle <= pi / 2"};
+  }
+  data_->lights.push_back(std::move(light));
+  return {};
+}
+
+Result<void> MotionRecording::set_sky(std::array<float, 3> luminance) {
+  if (!std::all_of(luminance.begin(), luminance.end(), is_luminance)) {
+    return Error{ErrorCode::kOutOfRange, "sky", "needs three numbers of 0 or more"};
+  }
+  data_->sky = luminance;
+  return {};
 }
 
 std::uint32_t MotionRecording::add_material(MotionMaterial material) {

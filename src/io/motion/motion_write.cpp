@@ -1,6 +1,7 @@
 #include "io/motion/motion_write.h"
 
 #include "base/float_environment.h"
+#include "io/model/model_write.h"
 #include "io/motion/motion_names.h"
 
 #include <algorithm>
@@ -102,6 +103,51 @@ std::vector<Vec3> normals_of(const MotionMesh& mesh, std::span<const Vec3> point
   return normals;
 }
 
+namespace {
+
+/// The edges of a triangle from its first corner, in the texture: u1, v1, u2, v2.
+std::array<float, 4> texture_edges(const MotionMesh& mesh, std::size_t first_index) {
+  const auto& [u, v] = mesh.vertices[mesh.indices[first_index]].uv;
+  const auto& [u1, v1] = mesh.vertices[mesh.indices[first_index + 1]].uv;
+  const auto& [u2, v2] = mesh.vertices[mesh.indices[first_index + 2]].uv;
+  return {u1 - u, v1 - v, u2 - u, v2 - v};
+}
+
+}  // namespace
+
+// Of a triangle (Lengyel, "Computing tangent space basis vectors for an arbitrary mesh", 2001), by its area
+// in the texture.
+std::vector<Vec3> tangents_of(const MotionMesh& mesh, std::span<const Vec3> points,
+                              std::span<const Vec3> normals) {
+  std::vector<Vec3> sums(points.size());
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto [u1, v1, u2, v2] = texture_edges(mesh, i);
+    const Vec3& corner = points[mesh.indices[i]];
+    const Vec3 right =
+        v2 * (points[mesh.indices[i + 1]] - corner) - v1 * (points[mesh.indices[i + 2]] - corner);
+    const float sign = u1 * v2 - u2 * v1 < 0 ? -1.0f : 1.0f;
+    for (std::size_t k = 0; k < 3; ++k) sums[mesh.indices[i + k]] += sign * right;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const Vec3& n = normals[i];
+    sums[i] = normalize(sums[i] - dot(sums[i], n) * n);
+    if (length(sums[i]) > 0.5f) continue;
+    const bool is_along_x = std::abs(n.x) > 0.9f * length(n);
+    sums[i] = normalize(cross(n, is_along_x ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
+  }
+  return sums;
+}
+
+std::vector<float> mirrors_of(const MotionMesh& mesh) {
+  std::vector<float> areas(mesh.vertices.size());
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto [u1, v1, u2, v2] = texture_edges(mesh, i);
+    for (std::size_t k = 0; k < 3; ++k) areas[mesh.indices[i + k]] += u1 * v2 - u2 * v1;
+  }
+  for (float& area : areas) area = area < 0 ? -1.0f : 1.0f;
+  return areas;
+}
+
 std::vector<Vec3> positions_of(const MotionMesh& mesh) {
   std::vector<Vec3> positions;
   positions.reserve(mesh.vertices.size());
@@ -136,25 +182,43 @@ Result<void> check_space(const std::string& path, double bytes) {
                    " are free: record a shorter time or fewer frames a second, or write .glb"};
 }
 
-Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& path) {
-  std::vector<std::string> names;
+float roughness_of(const MotionMaterial& material) {
+  return material.roughness.value_or(roughness_of(material.shininess));
+}
+
+bool has_images(const MotionMaterial& material) {
+  return material.image || material.normal_map || material.roughness_map;
+}
+
+Quaternion<double> rotation_of_light(Vec3 direction) {
+  const DVec3 to = normalize(vector_cast<double>(direction));
+  if (to.z > 0.999999) return {0, 1, 0, 0};  // half a turn about y
+  const DVec3 middle = cross(DVec3{0, 0, -1}, to);
+  return normalize(Quaternion<double>{middle.x, middle.y, middle.z, 1 - to.z});
+}
+
+Result<std::vector<MaterialImages>> write_images(const MotionJob& job, const std::string& path) {
   std::map<const MotionImage*, std::string> known;
   NameBook book(NameStyle::kFile);
   const std::filesystem::path place(path);
-  for (const MotionMaterial& material : job.data.materials) {
-    if (material.image == nullptr) {
-      names.emplace_back();
-      continue;
-    }
-    const auto [entry, is_new] = known.try_emplace(material.image.get());
+  const auto write = [&](const std::shared_ptr<const MotionImage>& image, std::string& name) -> Result<void> {
+    if (image == nullptr) return {};
+    const auto [entry, is_new] = known.try_emplace(image.get());
     if (is_new) {
-      const std::string name = book.take(place.stem().string() + "_" + material.image->name, "image.png");
-      entry->second = name;
-      OutputSink sink((place.parent_path() / name).string());
-      sink.put(material.image->bytes);
-      if (auto done = sink.finish(job.summary); !done) return done.error();
+      entry->second = book.take(place.stem().string() + "_" + image->name, "image.png");
+      OutputSink sink((place.parent_path() / entry->second).string());
+      sink.put(image->bytes);
+      if (auto done = sink.finish(job.summary); !done) return done;
     }
-    names.push_back(entry->second);
+    name = entry->second;
+    return {};
+  };
+  std::vector<MaterialImages> names;
+  for (const MotionMaterial& material : job.data.materials) {
+    MaterialImages& images = names.emplace_back();
+    if (auto done = write(material.image, images.color); !done) return done.error();
+    if (auto done = write(material.normal_map, images.normals); !done) return done.error();
+    if (auto done = write(material.roughness_map, images.roughness); !done) return done.error();
   }
   return names;
 }

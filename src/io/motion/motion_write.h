@@ -73,6 +73,15 @@ struct MotionJob {
 /// its triangles, by area. (0, 1, 0) where all triangles have shrunk to nothing.
 [[nodiscard]] std::vector<Vec3> normals_of(const MotionMesh& mesh, std::span<const Vec3> points);
 
+/// Returns the unit tangents of a mesh whose vertices are at `points` with `normals`: of each vertex the
+/// direction in which its texture goes to the right, at right angles to the normal. Any such direction where
+/// the texture has none.
+[[nodiscard]] std::vector<Vec3> tangents_of(const MotionMesh& mesh, std::span<const Vec3> points,
+                                            std::span<const Vec3> normals);
+
+/// Returns for each vertex 1 if its texture goes up along cross(normal, tangent), and -1 if it is mirrored.
+[[nodiscard]] std::vector<float> mirrors_of(const MotionMesh& mesh);
+
 /// Returns the positions of the vertices of a mesh.
 [[nodiscard]] std::vector<Vec3> positions_of(const MotionMesh& mesh);
 
@@ -82,9 +91,25 @@ struct MotionJob {
 /// Writes a length with a unit that suits it, such as "0.1 mm".
 [[nodiscard]] std::string length_text(double meters);
 
+/// Returns the roughness of a material, by its shininess if it has none of its own.
+[[nodiscard]] float roughness_of(const MotionMaterial& material);
+
+/// Tells whether a material has an image of any kind, which needs texture coordinates.
+[[nodiscard]] bool has_images(const MotionMaterial& material);
+
+/// Returns the smallest rotation from -z, along which lights of glTF and USD shine, to `direction`.
+[[nodiscard]] Quaternion<double> rotation_of_light(Vec3 direction);
+
+/// Names of the files of a material's images; empty for none.
+struct MaterialImages {
+  std::string color;
+  std::string normals;
+  std::string roughness;
+};
+
 /// Writes the images of materials beside the file at `path`, as "FILE_IMAGE", so that those of two scenes do
-/// not overwrite each other. Returns the name of the image of each material; empty for none.
-[[nodiscard]] Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& path);
+/// not overwrite each other. Returns their names for each material.
+[[nodiscard]] Result<std::vector<MaterialImages>> write_images(const MotionJob& job, const std::string& path);
 
 /// Returns an Error if the disk of a file has no room for so many bytes. Where that cannot be told there is
 /// none.

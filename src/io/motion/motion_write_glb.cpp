@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace hooke::io {
@@ -47,7 +48,11 @@ class GlbWriter {
   Result<void> write();
 
  private:
+  Json texture_of(const MotionImage& image);
+  void use_extension(const char* name);
   void add_materials();
+  void add_lights();
+  [[nodiscard]] bool has_relief(const MotionMesh& mesh) const;
   Json primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals);
   std::size_t mesh_number(std::uint32_t mesh);
   void add_body(std::size_t object, Json node);
@@ -69,6 +74,7 @@ class GlbWriter {
   const std::string& path_;
   GlbDocument document_;
   NameBook names_{NameStyle::kText};
+  std::map<const MotionImage*, std::size_t> textures_;
   std::map<std::uint32_t, std::size_t> meshes_;            ///< Number in the file of each body's mesh.
   std::map<std::vector<std::size_t>, std::size_t> times_;  ///< Accessor of the times of each set of keys.
   std::map<std::size_t, std::size_t> weights_;             ///< Accessor of weights by number of keys.
@@ -78,26 +84,36 @@ class GlbWriter {
   std::size_t frames_of_points_ = 0;
 };
 
+/// Returns a reference to the texture of an image, which is added when it is first asked for.
+Json GlbWriter::texture_of(const MotionImage& image) {
+  const auto [entry, is_new] = textures_.try_emplace(&image);
+  if (is_new) {
+    const bool is_png = !image.bytes.empty() && image.bytes[0] == std::byte{0x89};
+    const std::size_t source = document_.append("images", {{"name", image.name},
+                                                           {"mimeType", is_png ? "image/png" : "image/jpeg"},
+                                                           {"bufferView", document_.add_bytes(image.bytes)}});
+    entry->second = document_.append("textures", {{"source", source}});
+  }
+  return {{"index", entry->second}};
+}
+
 void GlbWriter::add_materials() {
-  std::map<const MotionImage*, std::size_t> textures;
   for (const MotionMaterial& material : data_.materials) {
     const auto& c = material.color;
     Json surface = {{"baseColorFactor", {c[0], c[1], c[2], material.opacity}},
-                    {"metallicFactor", 0.0f},
-                    {"roughnessFactor", roughness_of(material.shininess)}};
-    if (const MotionImage* image = material.image.get(); image != nullptr) {
-      const auto [entry, is_new] = textures.try_emplace(image);
-      if (is_new) {
-        const bool is_png = !image->bytes.empty() && image->bytes[0] == std::byte{0x89};
-        const std::size_t source =
-            document_.append("images", {{"name", image->name},
-                                        {"mimeType", is_png ? "image/png" : "image/jpeg"},
-                                        {"bufferView", document_.add_bytes(image->bytes)}});
-        entry->second = document_.append("textures", {{"source", source}});
-      }
-      surface["baseColorTexture"] = {{"index", entry->second}};
-    }
+                    {"metallicFactor", material.metalness},
+                    {"roughnessFactor", roughness_of(material)}};
+    if (material.image) surface["baseColorTexture"] = texture_of(*material.image);
+    if (material.roughness_map) surface["metallicRoughnessTexture"] = texture_of(*material.roughness_map);
     Json entry = {{"name", material.name}, {"pbrMetallicRoughness", surface}};
+    if (material.normal_map) {
+      entry["normalTexture"] = texture_of(*material.normal_map);
+      entry["normalTexture"]["scale"] = material.normal_scale;
+    }
+    if (material.transmission > 0.0f) {
+      use_extension("KHR_materials_transmission");
+      entry["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", material.transmission}};
+    }
     if (material.opacity < 1.0f) {
       entry["alphaMode"] = "BLEND";
     } else if (material.cutout) {
@@ -109,15 +125,66 @@ void GlbWriter::add_materials() {
   }
 }
 
+void GlbWriter::use_extension(const char* name) {
+  Json& used = document_.json()["extensionsUsed"];
+  if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+}
+
+/// Adds the lights, in lux and candela: a white matte surface of luminance L has an illuminance of pi L.
+void GlbWriter::add_lights() {
+  if (data_.lights.empty()) return;
+  use_extension("KHR_lights_punctual");
+  Json lights = Json::array();
+  for (const MotionLight& light : data_.lights) {
+    const std::string name = names_.take(light.name, "light");
+    Json entry = {{"name", name},
+                  {"type", "point"},
+                  {"color", light.color},
+                  {"intensity", std::numbers::pi_v<float> * light.strength}};
+    if (light.kind == MotionLight::Kind::kDirectional) entry["type"] = "directional";
+    if (light.kind == MotionLight::Kind::kSpot) {
+      entry["type"] = "spot";
+      entry["spot"] = {{"innerConeAngle", light.inner_angle}, {"outerConeAngle", light.outer_angle}};
+    }
+    const Quaternion<double> q = rotation_of_light(light.direction);
+    Json node = {{"name", name},
+                 {"translation", in_float(light.position)},
+                 {"rotation", {q.x, q.y, q.z, q.w}},
+                 {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}};
+    lights.push_back(std::move(entry));
+    document_.json()["scenes"][0]["nodes"].push_back(document_.append("nodes", std::move(node)));
+  }
+  document_.json()["extensions"]["KHR_lights_punctual"]["lights"] = std::move(lights);
+}
+
+bool GlbWriter::has_relief(const MotionMesh& mesh) const {
+  return std::any_of(mesh.parts.begin(), mesh.parts.end(), [&](const ModelPart& part) {
+    return data_.materials[part.material].normal_map != nullptr;
+  });
+}
+
 Json GlbWriter::primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions,
                               std::span<const Vec3> normals) {
   Json attributes = {{"POSITION", document_.add_floats(flat(positions), "VEC3", GlbTarget::kVertices, true)},
                      {"NORMAL", document_.add_floats(flat(normals), "VEC3", GlbTarget::kVertices, false)}};
-  if (has_uvs(mesh)) {
+  const bool is_textured = std::any_of(mesh.parts.begin(), mesh.parts.end(), [&](const ModelPart& part) {
+    return has_images(data_.materials[part.material]);
+  });
+  if (is_textured || has_uvs(mesh)) {
     std::vector<float> uvs;
     // glTF counts rows of an image from the top.
     for (const ModelVertex& vertex : mesh.vertices) uvs.insert(uvs.end(), {vertex.uv[0], 1 - vertex.uv[1]});
     attributes["TEXCOORD_0"] = document_.add_floats(uvs, "VEC2", GlbTarget::kVertices, false);
+  }
+  if (has_relief(mesh)) {
+    const std::vector<Vec3> tangents = tangents_of(mesh, positions, normals);
+    const std::vector<float> mirrors = mirrors_of(mesh);
+    std::vector<float> numbers;
+    for (std::size_t i = 0; i < tangents.size(); ++i) {
+      add_vector(numbers, tangents[i]);
+      numbers.push_back(mirrors[i]);
+    }
+    attributes["TANGENT"] = document_.add_floats(numbers, "VEC4", GlbTarget::kVertices, false);
   }
   Json primitives = Json::array();
   for (const ModelPart& part : mesh.parts) {
@@ -272,17 +339,25 @@ void GlbWriter::add_targets(std::size_t object, Json& mesh, std::span<const std:
   const MotionMesh& source = data_.mesh_of(object);
   const std::vector<Vec3> base = data_.points(object, keys[0]);
   const std::vector<Vec3> base_normals = normals_of(source, base);
+  const bool with_tangents = has_relief(source);
+  const std::vector<Vec3> base_tangents =
+      with_tangents ? tangents_of(source, base, base_normals) : std::vector<Vec3>();
   Json targets = Json::array();
   Json names = Json::array();
   for (const std::size_t key : keys.subspan(1)) {
     std::vector<Vec3> points = data_.points(object, key);
     std::vector<Vec3> normals = normals_of(source, points);
+    std::vector<Vec3> tangents = with_tangents ? tangents_of(source, points, normals) : std::vector<Vec3>();
+    for (std::size_t i = 0; i < tangents.size(); ++i) tangents[i] = tangents[i] - base_tangents[i];
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i] = points[i] - base[i];
       normals[i] = normals[i] - base_normals[i];
     }
     targets.push_back({{"POSITION", document_.add_floats(flat(points), "VEC3", GlbTarget::kVertices, true)},
                        {"NORMAL", document_.add_floats(flat(normals), "VEC3", GlbTarget::kVertices, false)}});
+    if (with_tangents) {
+      targets.back()["TANGENT"] = document_.add_floats(flat(tangents), "VEC3", GlbTarget::kVertices, false);
+    }
     names.push_back("frame_" + std::to_string(key));
   }
   for (Json& primitive : mesh["primitives"]) primitive["targets"] = targets;
@@ -333,6 +408,7 @@ Result<void> GlbWriter::write() {
     }
     job_.show(static_cast<double>(i + 1) / static_cast<double>(count));
   }
+  add_lights();
   if (!channels_.empty()) {
     document_.append("animations", {{"name", "motion"}, {"samplers", samplers_}, {"channels", channels_}});
   }

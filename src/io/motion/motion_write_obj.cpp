@@ -92,7 +92,13 @@ Result<void> write_library(ObjWriter& writer, const std::string& path) {
     sink.put_number(static_cast<double>(material.shininess));
     sink.put("\nd ");
     sink.put_number(static_cast<double>(material.opacity));
-    if (!images.value()[m].empty()) sink.put("\nmap_Kd " + images.value()[m]);
+    sink.put("\nPr ");
+    sink.put_number(static_cast<double>(roughness_of(material)));
+    sink.put("\nPm ");
+    sink.put_number(static_cast<double>(material.metalness));
+    const MaterialImages& files = images.value()[m];
+    if (!files.color.empty()) sink.put("\nmap_Kd " + files.color);
+    if (!files.normals.empty()) sink.put("\nnorm " + files.normals);
     sink.put("\n\n");
   }
   return sink.finish(writer.job.summary);
@@ -182,20 +188,20 @@ Result<void> write_obj_motion(const MotionJob& job) {
   if (auto done = write_library(writer, sequence.library()); !done) return done;
   std::vector<std::string> shown = job.summary.files;
   for (std::size_t frame = 0; frame < job.data.frames.size(); ++frame) {
-    if (auto done = write_frame(writer, sequence.name(frame + 1), frame); !done) return done;
+    if (auto done = write_frame(writer, sequence.name(frame), frame); !done) return done;
     if (frame == 0) {
       // Every frame has the bodies that stand, too, so that large scenes fill a disk before they end.
       const auto left = static_cast<double>(job.data.frames.size() - 1);
-      const double size = static_cast<double>(fs::file_size(sequence.name(1)));
-      if (auto fits = check_space(sequence.name(1), left * size); !fits) {
-        fs::remove(sequence.name(1));
+      const double size = static_cast<double>(fs::file_size(sequence.name(0)));
+      if (auto fits = check_space(sequence.name(0), left * size); !fits) {
+        fs::remove(sequence.name(0));
         return fits;
       }
     }
     job.show(static_cast<double>(frame + 1) / static_cast<double>(job.data.frames.size()));
   }
-  shown.push_back(sequence.name(1));
-  if (job.data.frames.size() > 1) shown.push_back(sequence.name(job.data.frames.size()));
+  shown.push_back(sequence.name(0));
+  if (job.data.frames.size() > 1) shown.push_back(sequence.name(job.data.frames.size() - 1));
   job.summary.files = std::move(shown);
   return {};
 }

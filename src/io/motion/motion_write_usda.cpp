@@ -1,6 +1,6 @@
-#include "io/model/model_write.h"
 #include "io/motion/motion_names.h"
 #include "io/motion/motion_reduce.h"
+#include "io/motion/motion_usda_looks.h"
 #include "io/motion/motion_usda_physics.h"
 #include "io/motion/motion_usda_text.h"
 
@@ -30,8 +30,7 @@ class UsdaWriter {
 
  private:
   void put_header();
-  void put_materials(const std::vector<std::string>& images);
-  void put_shaders(std::size_t material, const std::string& image);
+  void put_materials(const std::vector<MaterialImages>& images);
   void choose_shared();
   void put_still_mesh(const MotionMesh& mesh);
   void put_shared_meshes();
@@ -107,57 +106,13 @@ std::vector<std::string> UsdaWriter::metadata_of(const MotionObject& object,
   return lines;
 }
 
-void UsdaWriter::put_shaders(std::size_t number, const std::string& image) {
-  const MotionMaterial& material = data_.materials[number];
-  const std::string path = "/World/Looks/" + materials_[number];
-  const auto& c = material.color;
-  const DVec3 color = {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])};
-  text_.line("token outputs:surface.connect = <" + path + "/surface.outputs:surface>");
-  text_.begin("def Shader \"surface\"");
-  text_.line("uniform token info:id = \"UsdPreviewSurface\"");
-  if (image.empty()) {
-    text_.line("color3f inputs:diffuseColor = " + usda_vector(color));
-  } else {
-    text_.line("color3f inputs:diffuseColor.connect = <" + path + "/image.outputs:rgb>");
-  }
-  text_.line("float inputs:metallic = 0");
-  text_.line("float inputs:roughness = " +
-             usda_number(static_cast<double>(roughness_of(material.shininess))));
-  if (material.cutout && !image.empty()) {
-    text_.line("float inputs:opacity.connect = <" + path + "/image.outputs:a>");
-    text_.line("float inputs:opacityThreshold = 0.5");
-  } else {
-    text_.line("float inputs:opacity = " + usda_number(static_cast<double>(material.opacity)));
-  }
-  text_.line("token outputs:surface");
-  text_.end();
-  if (image.empty()) return;
-  text_.begin("def Shader \"reader\"");
-  text_.line("uniform token info:id = \"UsdPrimvarReader_float2\"");
-  text_.line("string inputs:varname = \"st\"");
-  text_.line("float2 outputs:result");
-  text_.end();
-  text_.begin("def Shader \"image\"");
-  text_.line("uniform token info:id = \"UsdUVTexture\"");
-  text_.line("asset inputs:file = @./" + image + "@");
-  text_.line("float4 inputs:scale = (" + usda_number(color.x) + ", " + usda_number(color.y) + ", " +
-             usda_number(color.z) + ", 1)");
-  text_.line("token inputs:sourceColorSpace = \"sRGB\"");
-  text_.line("float2 inputs:st.connect = <" + path + "/reader.outputs:result>");
-  text_.line("token inputs:wrapS = \"repeat\"");
-  text_.line("token inputs:wrapT = \"repeat\"");
-  text_.line("float outputs:a");
-  text_.line("float3 outputs:rgb");
-  text_.end();
-}
-
-void UsdaWriter::put_materials(const std::vector<std::string>& images) {
+void UsdaWriter::put_materials(const std::vector<MaterialImages>& images) {
   NameBook book(NameStyle::kIdentifier);
   text_.begin("def Scope \"Looks\"");
   for (std::size_t i = 0; i < data_.materials.size(); ++i) {
     materials_.push_back(book.take(data_.materials[i].name, "material"));
     text_.begin("def Material \"" + materials_[i] + "\"");
-    put_shaders(i, images[i]);
+    put_shaders(text_, data_.materials[i], "/World/Looks/" + materials_[i], images[i]);
     text_.end();
   }
   text_.end();
@@ -411,7 +366,7 @@ Result<void> UsdaWriter::write() {
   auto images = write_images(job_, job_.path);
   if (!images) return images.error();
   NameBook book(NameStyle::kIdentifier);
-  for (const char* own : {"Looks", "Surfaces", "Meshes", "Joints", "physics_scene"})
+  for (const char* own : {"Looks", "Lights", "Surfaces", "Meshes", "Joints", "physics_scene"})
     (void)book.take(own, own);
   for (const MotionObject& object : data_.objects) prims_.push_back(book.take(object.name, "object"));
   put_header();
@@ -422,6 +377,7 @@ Result<void> UsdaWriter::write() {
   text_.line("float physics:gravityMagnitude = " + usda_number(length(gravity)));
   text_.end();
   put_materials(images.value());
+  put_lights(text_, data_);
   choose_shared();
   put_shared_meshes();
   for (std::size_t i = 0; i < data_.objects.size() && !sink_.error(); ++i) {
