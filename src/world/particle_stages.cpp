@@ -496,7 +496,8 @@ void solve_ropes(WorldData& world, double end_time, Real h, bool first) {
                                   {.h = h,
                                    .end_time = end_time,
                                    .first = first,
-                                   .loaded_at_points = world.frame.loaded_cloths.loaded_at_points},
+                                   .loaded_at_points = world.frame.loaded_cloths.loaded_at_points,
+                                   .surfaces = world.frame.surfaces},
                                   world.derived.coupled_groups.groups[i], world.derived.rope_systems,
                                   world.frame.body_contacts, tables);
     }

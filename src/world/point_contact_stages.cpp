@@ -9,6 +9,7 @@
 #include "collision/deformable/rope_passes.h"
 #include "parallel/thread_pool.h"
 #include "solver/contact/stop_passes.h"
+#include "solver/rope/rope_spread.h"
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
 #include "solver/soft/pass_masses.h"
@@ -91,7 +92,12 @@ void solve_point_contacts(WorldData& world, Real h) {
   collision::stop_rope_passes(*world.pool, h, world.frame.rope_contacts, t);
   // Surfaces come before bodies: what is pressed between two bodies yields to them, and is cut off last.
   solver::SurfaceContacts& surfaces = world.frame.surfaces;
+  solver::begin_rope_spread(world.derived.rope_systems, surfaces, t, world.frame.rope_spread);
+  const auto spread = [&] {
+    solver::spread_over_ropes(h, world.derived.rope_systems, world.frame.rope_spread, t);
+  };
   solver::solve_surfaces(*world.pool, h, false, surfaces, t);
+  spread();
   solver::solve_element_contacts(h, t);
   for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
@@ -101,9 +107,13 @@ void solve_point_contacts(WorldData& world, Real h) {
       solver::solve_contacts_again(t, objects, rows, h, t.contacts, t.particles);
     });
   };
-  if (solver::refresh_surface_contacts(*world.pool, h, surfaces, t)) solve_again(surfaces.refreshed);
+  if (solver::refresh_surface_contacts(*world.pool, h, surfaces, t)) {
+    spread();
+    solve_again(surfaces.refreshed);
+  }
   for (int round = 2; surfaces.active && round <= solver::kSurfaceRounds; ++round) {
     solver::solve_surfaces(*world.pool, h, true, surfaces, t);
+    spread();
     solve_again(surfaces.touching);
   }
   for (solver::SoftGroup& group : world.derived.soft.groups)

@@ -24,6 +24,7 @@
 #include "solver/coupled/load_bearing_contacts.h"
 #include "solver/joint/joints.h"
 #include "solver/rope/rope_repulsion.h"
+#include "solver/rope/rope_spread.h"
 #include "solver/rope/rope_systems.h"
 #include "solver/rope/rope_twist.h"
 #include "solver/soft/pass_masses.h"
@@ -196,6 +197,7 @@ struct Frame {
   std::vector<solver::AirRecord> wind;                 ///< Velocity of the air at each particle [m/s].
   std::vector<solver::LiquidLoad> liquid_loads;        ///< Loads of the object that is handled now.
   std::vector<solver::GasVolume> gas_volumes;          ///< One for each of Derived::gas_objects.
+  solver::RopeSpreadScratch rope_spread;               ///< What surfaces did to ropes in a particle substep.
   std::vector<solver::RopeSystemScratch> rope_system_scratch;  ///< One per part of a parallel loop.
   std::vector<ContactShare> contact_shares;                    ///< Valid for one substep.
   std::vector<solver::HookedPoint> hooked_points;              ///< Valid for one particle substep.

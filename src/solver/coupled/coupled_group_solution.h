@@ -36,6 +36,7 @@ class CoupledGroupSolution {
                        state::Tables& tables)
       : h_(static_cast<double>(substep.h)),
         loaded_at_points_(substep.loaded_at_points),
+        surfaces_(substep.surfaces),
         b_(group),
         contacts_(contacts),
         t_(tables) {}
@@ -216,6 +217,7 @@ class CoupledGroupSolution {
 
   double h_;
   std::span<const std::uint8_t> loaded_at_points_;  ///< As in ParticleSubstep.
+  SurfaceContacts& surfaces_;                       ///< Holds what presses on ropes.
   CoupledGroup& b_;
   BodyContacts& contacts_;
   state::Tables& t_;

@@ -33,6 +33,7 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
     const std::size_t first_segment = b_.ropes.segments.size();
     const std::size_t first_contact_row = b_.ropes.contact_rows.size();
     load_rope(rope_systems[c], before, h_, t_, b_.ropes);
+    load_loads(rope_systems[c], static_cast<std::uint32_t>(first), h_, surfaces_, t_, b_.ropes.contact_rows);
     load_bends(rope_systems[c], first, t_.segments, b_.ropes);
     b_.settings.push_back(first_setting(first, first_segment, first_contact_row, b_.ropes));
     b_.rope_node_counts.push_back(rope_systems[c].node_count);
@@ -419,6 +420,7 @@ void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
   }
   HOOKE_ASSERT(node == b_.ropes.nodes.size() && segment == b_.ropes.segments.size());
   store_contact_rows(h_, b_.ropes.contact_rows, t_.contacts);
+  store_loads(b_.ropes.contact_rows, surfaces_);
   store_coupled_contacts();
   push_out_points();
   store_bodies();

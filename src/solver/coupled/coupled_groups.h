@@ -262,6 +262,7 @@ struct ParticleSubstep {
   /// By object, not 0 for cloths that are solved as a whole with loads at single points
   /// (solver/cloth/loaded_cloths.h).
   std::span<const std::uint8_t> loaded_at_points = {};
+  SurfaceContacts& surfaces;  ///< Holds what presses on ropes.
 };
 
 /// Solves for the velocities of everything in a coupled group in a particle substep. `before` holds the

@@ -233,8 +233,9 @@ void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, 
   }
 }
 
-void load_loads(const RopeSystem& rope_system, double h, const SurfaceContacts& surfaces,
-                const state::Tables& tables, std::vector<RopeContactRow>& contact_rows) {
+void load_loads(const RopeSystem& rope_system, std::uint32_t first_node, double h,
+                const SurfaceContacts& surfaces, const state::Tables& tables,
+                std::vector<RopeContactRow>& contact_rows) {
   const std::size_t own = contact_rows.size();
   auto at = std::lower_bound(surfaces.load_order.begin(), surfaces.load_order.end(),
                              std::array<std::uint32_t, 2>{rope_system.first_particle, 0});
@@ -249,7 +250,7 @@ void load_loads(const RopeSystem& rope_system, double h, const SurfaceContacts& 
     RopeContactRow t;
     t.row = RopeContactRow::kTether;
     t.load = number;
-    t.node = particle - rope_system.first_particle;
+    t.node = first_node + particle - rope_system.first_particle;
     t.rho = w * most > static_cast<double>(load.share) ? static_cast<double>(load.share) / w : most;
     t.n = vector_cast<double>(load.normal);
     t.surface = vector_cast<double>(load.surface);
@@ -259,7 +260,10 @@ void load_loads(const RopeSystem& rope_system, double h, const SurfaceContacts& 
     contact_rows.push_back(t);
   }
   if (contact_rows.size() == own) return;
-  std::stable_sort(contact_rows.begin(), contact_rows.end(),
+  const auto first =
+      std::partition_point(contact_rows.begin(), contact_rows.begin() + static_cast<std::ptrdiff_t>(own),
+                           [&](const RopeContactRow& t) { return t.node < first_node; });
+  std::stable_sort(first, contact_rows.end(),
                    [](const RopeContactRow& a, const RopeContactRow& b) { return a.node < b.node; });
 }
 
@@ -458,7 +462,9 @@ Unconverged update_contact_rows(double h, bool let_go, RopeScratch& s) {
   Unconverged unconverged;
   for (RopeContactRow& t : s.contact_rows) {
     const RopeNode& node = s.nodes[t.node];
-    if (t.of_point) {
+    if (t.is_load()) {
+      unconverged.ropes = update_load(h, node.u, t) || unconverged.ropes;
+    } else if (t.of_point) {
       unconverged.points = update_point_contact_row(h, let_go, node.u, t) || unconverged.points;
     } else {
       unconverged.add(update_contact_row(h, let_go, node, t));

@@ -119,9 +119,11 @@ void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityR
 void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
                        const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
 
-/// Adds what presses on a rope through surfaces (SurfaceContacts::loads), in the order of nodes.
-void load_loads(const RopeSystem& rope_system, double h, const SurfaceContacts& surfaces,
-                const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
+/// Adds what presses on a rope whose nodes begin at `first_node` through surfaces (SurfaceContacts::loads),
+/// in the order of nodes.
+void load_loads(const RopeSystem& rope_system, std::uint32_t first_node, double h,
+                const SurfaceContacts& surfaces, const state::Tables& tables,
+                std::vector<RopeContactRow>& contact_rows);
 
 /// Updates a row of load_loads. Returns whether it switched on or off.
 bool update_load(double h, DVec3 u, RopeContactRow& t);

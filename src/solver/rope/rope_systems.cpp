@@ -193,7 +193,7 @@ class Group {
     HOOKE_ASSERT(rope_system.first_anchor <= rope_system.end_anchor &&
                  rope_system.end_anchor <= source.anchors.size());
     load_contact_rows(rope_system, 0, source.h, source.tables, contact_rows_[lane]);
-    load_loads(rope_system, source.h, source.surfaces, source.tables, contact_rows_[lane]);
+    load_loads(rope_system, 0, source.h, source.surfaces, source.tables, contact_rows_[lane]);
     for (std::uint32_t i = rope_system.first_anchor; i < rope_system.end_anchor; ++i)
       load_anchor(source.anchors[i], members.traits().rows[source.anchors[i].node].w[lane], lane, source);
   }

@@ -89,6 +89,11 @@ bool refresh_bounds(const state::Tables& t, Real h, SurfaceContacts& contacts) {
   return any;
 }
 
+/// Whether it is a rope that repels others: of these no two touch (surfaces_touch).
+bool repels(const state::Tables& t, const SurfaceContacts& contacts, std::uint32_t mesh) {
+  return t.objects[contacts.surfaces.meshes[mesh].object].repulsion_strength > Real(0);
+}
+
 /// Lists the pairs of surfaces whose bounds overlap, in ascending order.
 void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
   const std::vector<SurfaceMesh>& meshes = contacts.surfaces.meshes;
@@ -98,12 +103,22 @@ void list_pairs(const state::Tables& t, SurfaceContacts& contacts) {
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(contacts.bounds[a].lower.x, a) < std::pair(contacts.bounds[b].lower.x, b);
   });
+  // Hair is looked at only against what is no hair, which stands once more behind all: all pairs of some
+  // thousand strands would take longer than all else.
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const std::uint32_t mesh = order[i];
+    if (!repels(t, contacts, mesh)) order.push_back(mesh);
+  }
+  std::size_t next_other = meshes.size();
   contacts.next_pairs.clear();
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
     const std::uint32_t a = order[i];
     const state::Deformable& object = t.objects[meshes[a].object];
     if (object.surface.self_contact) contacts.next_pairs.push_back({a, a});
-    for (std::size_t j = i + 1; j < order.size(); ++j) {
+    const bool is_hair = repels(t, contacts, a);
+    if (!is_hair) ++next_other;
+    const std::size_t end = is_hair ? order.size() : meshes.size();
+    for (std::size_t j = is_hair ? next_other : i + 1; j < end; ++j) {
       const std::uint32_t b = order[j];
       if (contacts.bounds[b].lower.x > contacts.bounds[a].upper.x) break;
       if (!overlap(contacts.bounds[a], contacts.bounds[b])) continue;
