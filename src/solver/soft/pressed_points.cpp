@@ -422,10 +422,18 @@ void settle_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables&
     const Vec3 relative =
         v - velocity_now(t.bodies, point.holder, contacts.lever[row]) - contacts.belt_velocity[row];
     const Real along = dot(n, relative);
-    Vec3 change = (-along - std::max(contacts.separation[row], Real(0)) / h) * n;
-    if ((point.stuck & bit_of(point, row)) != 0) change -= relative - along * n;
-    v += change;
-    push_body(point.holder, (Real(-1) / point.inverse_mass) * change, contacts.lever[row], t.bodies);
+    const Vec3 sliding = relative - along * n;
+    const Real rate = length(sliding);
+    // Both yield by their masses: a light body that got all of what a heavy point lost would gain energy.
+    const auto mass = [&](Vec3 direction) {
+      return Real(1) / (point.inverse_mass +
+                        inverse_mass_at(t.bodies, point.holder, direction, contacts.lever[row]));
+    };
+    Vec3 impulse = mass(n) * (-along - std::max(contacts.separation[row], Real(0)) / h) * n;
+    if ((point.stuck & bit_of(point, row)) != 0 && rate > Real(0))
+      impulse -= mass((Real(1) / rate) * sliding) * sliding;
+    v += point.inverse_mass * impulse;
+    push_body(point.holder, -impulse, contacts.lever[row], t.bodies);
   }
   tetrahedra.pressed.clear();
 }
