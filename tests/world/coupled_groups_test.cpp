@@ -416,6 +416,24 @@ TEST_SUITE("world/coupled_groups") {
     CHECK(why({.kind = HookKind::kSlider, .a = {.point = point(rope, 3)}, .b = {.body = body}}) ==
           "hook.a must be a body or the world: a point has no axes to slide along");
   }
+
+  TEST_CASE("a slide whose rope is elsewhere is refused with the distance and the nearest place") {
+    World world = make_world(empty_space());
+    const RopeId rope = take(world.add_rope({.points = {{-0.5, 0, 0}, {0, 0, 0}, {0.5, 0, 0}}, .pins = {}}));
+    const auto at = [&](double height) {
+      return world.add_hook({.kind = HookKind::kRopeSlide,
+                             .a = {.point = point(rope, PointRef::kNearest)},
+                             .anchor = {0.2, height, 0}});
+    };
+    const Result<HookId> off = at(0.1);
+    REQUIRE_FALSE(off.has_value());
+    CHECK(off.error().where == "hook.anchor");
+    CHECK(off.error().message.find("is 0.100000 m off the rope") != std::string::npos);
+    CHECK(off.error().message.find("put it at (0.200000, 0.000000, 0.000000)") != std::string::npos);
+    take(at(0.04));  // within a tenth of a segment
+    run(world, 30);
+    CHECK(world.measure().energy.total() < 0.05);
+  }
 }
 
 }  // namespace hooke
