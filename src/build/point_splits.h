@@ -170,7 +170,8 @@ void append_split_particles(std::uint32_t object, std::span<const PointSplit> sp
 /// How far particles are moved into their elements where they have parted in a surface that touches itself,
 /// as a share of the way to their middle: nothing keeps surfaces that lie on each other from crossing, so
 /// that the sides of a crack must not. Smaller: rounding of positions leaves no gap. Larger: a form at rest
-/// that is disturbed, and energy. Chosen by hand; with none a cut sheet on a ball had 9 crossings.
+/// that is disturbed, and energy of cloths (solids keep their strain). Chosen by hand; with none a cut sheet
+/// on a ball had 9 crossings.
 inline constexpr double kGapOfCracks = 1e-3;
 
 /// Moves the particles of splits apart that lie on each other, but those that are held.
