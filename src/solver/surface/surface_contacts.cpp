@@ -209,7 +209,7 @@ Real largest_overlap(const state::Tables& tables, const SurfaceContacts& contact
 void truncate_surfaces(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts, state::Tables& tables) {
   if (contacts.active) {
     for_groups(pool, contacts, [&](SurfaceGroup& group) {
-      truncate_group(h, contacts, group, tables.particles);
+      truncate_group(h, contacts, group, tables);
       --group.substeps_left;
     });
   }

@@ -2,6 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "geometry/box.h"
+#include "solver/surface/solid_pieces.h"
 #include "solver/surface/surface_crossings.h"
 #include "solver/surface/surface_mesh.h"
 #include "solver/surface/surface_records.h"
@@ -65,6 +66,7 @@ struct SurfaceGroup {
   std::vector<SurfaceTangle> tangles;            ///< In the order of pairs.
   std::vector<std::uint32_t> hot;                ///< Scratch memory: pairs that are corrected.
   std::vector<Real> speeds;                      ///< Scratch memory.
+  SolidPieces pieces;                            ///< Scratch memory: of stiff solids that are corrected.
   SurfaceCounts counts;
   bool any_rope = false;                       ///< Some of the surfaces is a rope.
   std::uint32_t first_load = 0, end_load = 0;  ///< Its rows of SurfaceContacts::loads.

@@ -28,16 +28,24 @@ bool measure_pairs_first(const SurfaceContacts& contacts, SurfaceGroup& group) {
 /// Moves the vertices of one group and looks at its pairs.
 class Truncation {
  public:
-  Truncation(Real h, SurfaceContacts& contacts, SurfaceGroup& group, state::Particles& particles)
+  Truncation(Real h, SurfaceContacts& contacts, SurfaceGroup& group, state::Tables& tables)
       : h_(h),
         c_(contacts),
         group_(group),
-        particles_(particles),
+        tables_(tables),
+        particles_(tables.particles),
         displacement_(vector_cast<Real>(group.displacement)) {}
 
   void run() {
     if (group_.overflows) return hold_all();
     clip_all();
+    group_.pieces.clear();
+    part_pairs();
+    give_back_momentum();
+  }
+
+ private:
+  void part_pairs() {
     int rounds = 0;
     for (bool near = measure_pairs_first(c_, group_); near; near = measure_pairs(c_, group_)) {
       if (rounds == kCorrectionRounds) return hold_back();
@@ -49,7 +57,6 @@ class Truncation {
     }
   }
 
- private:
   [[nodiscard]] Vec3 x(std::uint32_t vertex) const { return c_.position[vertex].x; }
 
   /// Where the vertex is, relative to its cage.
@@ -138,6 +145,18 @@ class Truncation {
     return found;
   }
 
+  /// Changes the velocity of a vertex by what it was moved, and notes the momentum.
+  void speed_up(std::uint32_t vertex, Vec3 moved) {
+    state::VelocityRecord& record = particles_.velocity[c_.surfaces.particle[vertex]];
+    if (!(record.inverse_mass > Real(0))) return;
+    record.v += (Real(1) / h_) * moved;
+    gained_ += (1 / static_cast<double>(record.inverse_mass)) * vector_cast<double>(moved);
+  }
+
+  [[nodiscard]] Real inverse_mass(std::uint32_t vertex) const {
+    return particles_.velocity[c_.surfaces.particle[vertex]].inverse_mass;
+  }
+
   /// Moves a vertex as far as its cage allows, which becomes velocity.
   void correct(std::uint32_t vertex, Vec3 by) {
     const Vec3 displacement = displacement_of(vertex);
@@ -145,28 +164,103 @@ class Truncation {
     clip_to_cage(c_.cage[vertex], clipped);
     const Vec3 moved = clipped - displacement;
     move(vertex, moved);
-    particles_.velocity[c_.surfaces.particle[vertex]].v += (Real(1) / h_) * moved;
+    speed_up(vertex, moved);
   }
 
-  [[nodiscard]] Real inverse_mass(std::uint32_t vertex) const {
-    return particles_.velocity[c_.surfaces.particle[vertex]].inverse_mass;
+  /// What moves where a vertex is pushed: the vertex, or the piece of a stiff solid that it belongs to.
+  struct Mover {
+    std::uint32_t vertex = 0;
+    SolidPiece* piece = nullptr;
+    DVec3 place = {};         ///< Where a piece is pushed, from its object's origin [m].
+    Real mobility = Real(0);  ///< [1/kg]
+  };
+
+  [[nodiscard]] DVec3 place_of(std::uint32_t vertex) const {
+    return vector_cast<double>(particles_.position[c_.surfaces.particle[vertex]].x);
+  }
+
+  /// A piece is pushed at `place`, from the group's origin: both sides at the same one, so that they keep
+  /// their angular momentum.
+  [[nodiscard]] Mover mover_of(std::uint32_t vertex, Vec3 n, Vec3 place, bool whole) {
+    const std::uint32_t object = c_.surfaces.object_of(vertex);
+    if (!whole || c_.stiff[object] == 0) return {vertex, nullptr, {}, inverse_mass(vertex)};
+    SolidPiece& piece = group_.pieces.piece_at(tables_, object, c_.surfaces.particle[vertex]);
+    const DVec3 at = vector_cast<double>(place - c_.shift[c_.surfaces.mesh_of[vertex]]);
+    const double mobility = piece.inverse_mass > 0 ? piece.mobility(at, vector_cast<double>(n)) : 0;
+    return {vertex, &piece, at, static_cast<Real>(mobility)};
+  }
+
+  /// How much of a displacement the cage of a vertex allows, from 0 to 1.
+  [[nodiscard]] Real share_within(std::uint32_t vertex, Vec3 by) const {
+    const Vec3 displacement = displacement_of(vertex);
+    Vec3 clipped = displacement + by;
+    if (!clip_to_cage(c_.cage[vertex], clipped)) return Real(1);
+    const Real length = length_squared(by);
+    return length > Real(0) ? std::clamp(dot(clipped - displacement, by) / length, Real(0), Real(1))
+                            : Real(1);
+  }
+
+  /// How much of an impulse times time the cages of a piece allow it to take, from 0 to 1.
+  [[nodiscard]] Real share_of(const Mover& mover, Vec3 push) {
+    Real share = Real(1);
+    if (mover.piece == nullptr || !(mover.mobility > Real(0))) return share;
+    const SurfaceMesh& mesh = c_.surfaces.meshes[c_.surfaces.mesh_of[mover.vertex]];
+    for (std::uint32_t vertex = mesh.first_vertex; vertex < mesh.end_vertex(); ++vertex) {
+      if (!group_.pieces.has(tables_, *mover.piece, c_.surfaces.particle[vertex])) continue;
+      const DVec3 by = mover.piece->change_at(mover.place, vector_cast<double>(push), place_of(vertex));
+      share = std::min(share, share_within(vertex, vector_cast<Real>(by)));
+    }
+    return share;
+  }
+
+  /// Moves what is pushed, which becomes velocity.
+  void push_away(const Mover& mover, Vec3 push) {
+    if (!(mover.mobility > Real(0))) return;
+    if (mover.piece == nullptr) return correct(mover.vertex, mover.mobility * push);
+    SolidPiece& piece = *mover.piece;
+    const DVec3 impulse = vector_cast<double>(push);
+    const state::Rows rows = tables_.objects[piece.object].particles;
+    for (std::uint32_t p = rows.first; p < rows.end(); ++p) {
+      if (!group_.pieces.has(tables_, piece, p)) continue;
+      const DVec3 place = vector_cast<double>(particles_.position[p].x);
+      const Vec3 by = vector_cast<Real>(piece.change_at(mover.place, impulse, place));
+      particles_.position[p].x += by;
+      particles_.velocity[p].v += (Real(1) / h_) * by;
+    }
+    const std::uint32_t number = c_.surfaces.mesh_of[mover.vertex];
+    const SurfaceMesh& mesh = c_.surfaces.meshes[number];
+    for (std::uint32_t vertex = mesh.first_vertex; vertex < mesh.end_vertex(); ++vertex)
+      c_.position[vertex].x = particles_.position[c_.surfaces.particle[vertex]].x + c_.shift[number];
+    piece.center += piece.inverse_mass * impulse;
+    gained_ += impulse;
   }
 
   /// Moves the nearest vertices of a pair apart, in equal shares of momentum, until it has its distance.
-  /// Returns whether it was too near.
+  /// Stiff solids move as wholes, but where that does not do. Returns whether it was too near.
   bool correct_pair(const Pair& pair) {
     constexpr int kTries = 6;
+    constexpr int kWholeTries = 4;
     const Real least = pair.block->least[pair.lane];
     for (int i = 0; i < kTries; ++i) {
       const Critical critical = critical_of(pair);
       if (!(critical.gap < least)) return i > 0;
-      const Real first = inverse_mass(critical.first);
-      const Real second = inverse_mass(critical.second);
-      if (!(first + second > Real(0))) return true;
+      const Vec3 n = pair.normal();
+      const Vec3 place =
+          pair.first_side == 1 ? x(critical.first) : Real(0.5) * (x(critical.first) + x(critical.second));
+      group_.pieces.make_room_for_two();
+      Mover first = mover_of(critical.first, n, place, i < kWholeTries);
+      Mover second = mover_of(critical.second, n, place, i < kWholeTries);
+      const bool is_one = first.piece != nullptr && first.piece == second.piece;
+      if (is_one || !(first.mobility + second.mobility > Real(0))) {
+        first = mover_of(critical.first, n, place, false);
+        second = mover_of(critical.second, n, place, false);
+      }
+      if (!(first.mobility + second.mobility > Real(0))) return true;
       const Real missing = Real(1.05) * least - critical.gap + Real(0.5) * group_.reserve;
-      const Vec3 by = (missing / (first + second)) * pair.normal();
-      if (first > Real(0)) correct(critical.first, first * by);
-      if (second > Real(0)) correct(critical.second, -second * by);
+      const Vec3 push = (missing / (first.mobility + second.mobility)) * n;
+      const Real share = std::min(share_of(first, push), share_of(second, -push));
+      push_away(first, share * push);
+      push_away(second, -share * push);
     }
     return true;
   }
@@ -207,17 +301,41 @@ class Truncation {
     const std::uint32_t particle = c_.surfaces.particle[vertex];
     const Vec3 before = particles_.position[particle].x;
     move(vertex, c_.start[vertex].x + group_.displacement_now - before);
-    const Vec3 moved = particles_.position[particle].x - before;
-    state::VelocityRecord& record = particles_.velocity[particle];
-    if (record.inverse_mass > Real(0)) record.v += (Real(1) / h_) * moved;
+    speed_up(vertex, particles_.position[particle].x - before);
     return true;
+  }
+
+  /// Takes what corrections have given a group of solids as a whole from all of it: nothing outside pushed. A
+  /// group of which something is held gets it from there.
+  void give_back_momentum() {
+    if (group_.held || gained_ == DVec3{}) return;
+    const bool all_solid = std::all_of(group_.meshes.begin(), group_.meshes.end(), [&](std::uint32_t mesh) {
+      return tables_.objects[c_.surfaces.meshes[mesh].object].tetrahedra.count > 0;
+    });
+    if (!all_solid) return;
+    double mass = 0;
+    const auto for_free = [&](auto visit) {
+      for (const std::uint32_t mesh : group_.meshes) {
+        const state::Rows rows = tables_.objects[c_.surfaces.meshes[mesh].object].particles;
+        for (std::uint32_t p = rows.first; p < rows.end(); ++p) {
+          if (particles_.velocity[p].inverse_mass > Real(0)) visit(particles_.velocity[p]);
+        }
+      }
+    };
+    for_free(
+        [&](const state::VelocityRecord& record) { mass += 1 / static_cast<double>(record.inverse_mass); });
+    const Vec3 v = vector_cast<Real>((1 / (mass * static_cast<double>(h_))) * gained_);
+    if (length_squared(v) < kRoundedSpeed * kRoundedSpeed) return;
+    for_free([&](state::VelocityRecord& record) { record.v -= v; });
   }
 
   Real h_;
   SurfaceContacts& c_;
   SurfaceGroup& group_;
+  state::Tables& tables_;
   state::Particles& particles_;
   Vec3 displacement_;
+  DVec3 gained_ = {};  ///< Momentum that corrections have given the group, times h [kg m].
 };
 
 /// How far the group moves in this substep.
@@ -265,10 +383,10 @@ bool pairs_would_meet(const state::Tables& tables, Real h, SurfaceContacts& cont
   return false;
 }
 
-void truncate_group(Real h, SurfaceContacts& contacts, SurfaceGroup& group, state::Particles& particles) {
-  group.displacement_now = displacement_of_group(particles, h, contacts, group);
+void truncate_group(Real h, SurfaceContacts& contacts, SurfaceGroup& group, state::Tables& tables) {
+  group.displacement_now = displacement_of_group(tables.particles, h, contacts, group);
   group.displacement += vector_cast<double>(group.displacement_now);
-  Truncation(h, contacts, group, particles).run();
+  Truncation(h, contacts, group, tables).run();
 }
 
 }  // namespace hooke::solver

@@ -86,4 +86,9 @@ inline constexpr Real kHotShare = Real(0.1);
 /// Rounding of positions, over the largest coordinate: what is farther apart is apart for certain.
 inline constexpr Real kSurfaceReserve = Real(3.4) * std::numeric_limits<Real>::epsilon();
 
+// Corrections.
+
+/// Speed below which what corrections gave a group as a whole is rounding [m/s]. Chosen by hand.
+inline constexpr Real kRoundedSpeed = Real(1e-7);
+
 }  // namespace hooke::solver
