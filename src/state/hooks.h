@@ -93,8 +93,10 @@ struct Hook {
   /// Points of the object at one end that were inside the body at the other end when they were hooked,
   /// counted within the object. They do not touch that body: a rope may end at the middle of a crate.
   std::vector<std::uint32_t> inside = {};
-  Real cone = kRigid;            ///< kBall: largest angle between the x axes [rad].
-  Real rest_distance = Real(0);  ///< kDistance: distance of the anchors when they were hooked [m].
+  Real cone = kRigid;  ///< kBall: largest angle between the x axes [rad].
+  /// kDistance: distance of the anchors when they were hooked. kBall between points and a body: distance of
+  /// the object's nearest point outside the body when they were hooked [m].
+  Real rest_distance = Real(0);
 };
 
 }  // namespace hooke::state

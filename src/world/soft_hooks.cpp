@@ -85,18 +85,13 @@ void forget_impulses(Hook& hook) {
   hook.giving = fresh.giving;
 }
 
-void find_inside(Hook& hook, const Tables& t) {
-  hook.inside.clear();
-  const std::uint32_t body = hook.other_end().body;
-  if (hook.collide || body == HookPlace::kWorld || (hook.a.is_point() && hook.b.is_point())) return;
-  hook.inside = collision::points_inside(t, hook.point_end().object, body);
-}
-
-/// Lets no point of the solid touch the body at the other end, as two bodies on a hook do not.
+/// Lets no point of the solid touch the body at the other end, as two bodies on a hook do not, unless the
+/// hook says so.
 void exclude_all(Hook& hook, const Tables& t) {
+  if (hook.collide) return collision::note_hooked_points(t, hook);
   hook.inside.clear();
   const std::uint32_t body = hook.other_end().body;
-  if (hook.collide || body == HookPlace::kWorld || (hook.a.is_point() && hook.b.is_point())) return;
+  if (body == HookPlace::kWorld || (hook.a.is_point() && hook.b.is_point())) return;
   hook.inside.resize(t.objects[hook.point_end().object].particles.count);
   std::iota(hook.inside.begin(), hook.inside.end(), 0U);
 }
@@ -185,7 +180,7 @@ void restore(const Hook& before, std::uint32_t body, Hook& hook, const Tables& t
   hook.a = a;
   hook.b = b;
   if (hook.holds_point()) {
-    find_inside(hook, t);
+    collision::note_hooked_points(t, hook);
     return;
   }
   if (before.a.body != HookPlace::kWorld) hook.a.axes = before.a.axes;
@@ -239,7 +234,7 @@ void move_hooks_to_body(std::uint32_t object, std::uint32_t body, Tables& t) {
     if (!moved) continue;
     forget_impulses(hook);
     hook.inside.clear();
-    if (hook.holds_point()) find_inside(hook, t);
+    if (hook.holds_point()) collision::note_hooked_points(t, hook);
     wake_ends(hook, t.bodies);
     ++t.hook_revision;
   }

@@ -46,6 +46,37 @@ SolidDesc bar(Real young_modulus) {
 }  // namespace
 
 TEST_SUITE("world/strained_solids") {
+  TEST_CASE("a jelly hooked to a free box that it touches meets it as an inelastic impact would") {
+    // 1 kg at 3 m/s and 1 kg at rest: half of the energy stays if they move on together.
+    for (const Real young_modulus : {Real(1e6), Real(1e8)}) {
+      for (const double height :
+           {-0.0005, 0.0001, 0.0005}) {  // of its foot above the box; its radius is 1 mm
+        for (const double anchor : {0.0, 0.01}) {
+          World world = make_world(sleepless_space(8));
+          const BodyId box = take(world.add_body({.kind = BodyKind::kDynamic,
+                                                  .shape = Shape::box({Real(0.2), Real(0.15), Real(0.2)}),
+                                                  .mass = Real(1)}));
+          SolidDesc desc;
+          desc.cells = {1, 2, 1};
+          desc.size = {Real(0.24), Real(0.4), Real(0.16)};
+          desc.position = {0, 0.35 + height, 0};
+          desc.velocity = {0, -3, 0};
+          desc.total_mass = Real(1);
+          desc.thickness = Real(0.002);
+          desc.young_modulus = young_modulus;
+          desc.damping = Real(0.005);
+          const SolidId jelly = take(world.add_solid(desc));
+          take(world.add_hook({.a = {.body = box},
+                               .b = {.point = point(jelly, PointRef::kNearest)},
+                               .anchor = {0.05, 0.15 + anchor, 0.02},
+                               .collide = true}));
+          CHECK(most_energy(world, 30) < 0.6 * 4.5);
+          CHECK(world.measure().momentum.y == doctest::Approx(-3).epsilon(1e-3));
+        }
+      }
+    }
+  }
+
   TEST_CASE("two yielding balls of up to 3 GPa that meet lose energy") {
     for (const Real young_modulus : {Real(3e8), Real(1e9), Real(3e9)}) {
       World world = make_world(sleepless_space(8));

@@ -73,19 +73,39 @@ void make_frames(const state::Tables& t, std::span<const std::uint32_t> collider
   for (const std::uint32_t c : colliders) frames.push_back(frame_of(t, c, object));
 }
 
+void list_hooked_near(const state::Tables& t, std::vector<HookedNear>& near) {
+  near.clear();
+  if (t.objects.empty()) return;
+  for (const state::Hook& hook : t.hooks) {
+    if (!hook.collide || hook.broken || hook.kind != HookKind::kBall || !hook.holds_point()) continue;
+    const std::uint32_t object = hook.point_end().object;
+    const std::uint32_t body = hook.other_end().body;
+    if (body != state::HookPlace::kWorld && t.objects[object].tetrahedra.count > 0)
+      near.push_back({object, body, hook.rest_distance});
+  }
+}
+
+Real touching_radius(const std::vector<HookedNear>& near, std::uint32_t object, std::uint32_t body,
+                     Real radius) {
+  for (const HookedNear& one : near) {
+    if (one.object == object && one.body == body) radius = std::min(radius, one.distance);
+  }
+  return radius;
+}
+
 void list_hooked(const state::Tables& t, std::vector<Hooked>& hooked) {
   hooked.clear();
   if (t.objects.empty()) return;
   const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
     if (!point.is_point() || body == state::HookPlace::kWorld) return;
-    for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
     const state::Rows object = t.objects[point.object].particles;
     for (const std::uint32_t i : hook.inside) hooked.emplace_back(object.first + i, body);
+    if (hook.collide) return;
+    for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
     if (hook.kind != HookKind::kRopeSlide) return;
     for (std::uint32_t p = object.first; p < object.end(); ++p) hooked.emplace_back(p, body);
   };
   for (const state::Hook& hook : t.hooks) {
-    if (hook.collide) continue;
     add(hook, hook.a, hook.b.body);
     add(hook, hook.b, hook.a.body);
   }

@@ -61,6 +61,20 @@ using Hooked = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Lists the pairs that hooks hold together, with the points that were inside the body; for a rope along
 /// which a body slides, all its points. Sorted.
+
+/// A solid that a hook holds to a body which it may touch. Where it was nearer than by its thickness when it
+/// was hooked, it touches the body at that distance: hook and contact would strain against each other.
+struct HookedNear {
+  std::uint32_t object = 0;  ///< Row of the object.
+  std::uint32_t body = 0;    ///< Row of the body.
+  Real distance = Real(0);   ///< At which its points touch the body, state::Hook::rest_distance [m].
+};
+void list_hooked_near(const state::Tables& tables, std::vector<HookedNear>& near);
+
+/// The radius with which points of an object touch a body, of points with `radius` [m].
+[[nodiscard]] Real touching_radius(const std::vector<HookedNear>& near, std::uint32_t object,
+                                   std::uint32_t body, Real radius);
+
 void list_hooked(const state::Tables& tables, std::vector<Hooked>& hooked);
 [[nodiscard]] bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body);
 

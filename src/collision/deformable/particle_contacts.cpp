@@ -55,6 +55,7 @@ void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint3
 struct ParticleContactScratch::Buffers {
   std::vector<std::uint32_t> colliders;  // colliders that particles may touch
   std::vector<Hooked> hooked;
+  std::vector<HookedNear> hooked_near;
   std::vector<std::uint32_t> near;       // colliders near one object
   std::vector<Frame> frames;             // frames of those
   std::vector<std::uint32_t> triangles;  // triangles of one query
@@ -231,20 +232,26 @@ ParticleContactScratch::~ParticleContactScratch() = default;
 ParticleContactScratch::ParticleContactScratch(ParticleContactScratch&&) noexcept = default;
 ParticleContactScratch& ParticleContactScratch::operator=(ParticleContactScratch&&) noexcept = default;
 
-std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t object_row,
-                                         std::uint32_t body) {
-  const state::Deformable& object = t.objects[object_row];
-  std::vector<std::uint32_t> inside;
-  if (!is_solid(t, body)) return inside;
+void note_hooked_points(const state::Tables& t, state::Hook& hook) {
+  hook.inside.clear();
+  const std::uint32_t body = hook.other_end().body;
+  if (!hook.holds_point() || body == state::HookPlace::kWorld || !is_solid(t, body)) return;
+  const state::Deformable& object = t.objects[hook.point_end().object];
+  if (hook.collide && (object.tetrahedra.count == 0 || hook.kind != HookKind::kBall)) return;
+  if (hook.collide) hook.rest_distance = kRigid;
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
     const Frame frame = frame_of(t, c, object);
     for (std::uint32_t i = 0; i < object.particles.count; ++i) {
       const state::PositionRecord& at = t.particles.position[object.particles.first + i];
-      if (distance_to(frame, at.x, at.radius) < Real(0.5) * at.radius) inside.push_back(i);
+      const Real distance = distance_to(frame, at.x, at.radius);
+      if (distance < (hook.collide ? Real(0) : Real(0.5) * at.radius)) {
+        hook.inside.push_back(i);
+      } else if (hook.collide) {
+        hook.rest_distance = std::min(hook.rest_distance, distance);
+      }
     }
   }
-  base::sort_unique(inside);
-  return inside;
+  base::sort_unique(hook.inside);
 }
 
 void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t) {
@@ -254,9 +261,10 @@ void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t)
     return Real(2) * length(t.particles.velocity[p].v) * step + fall;
   };
   Finder& finder = scratch.buffers();
-  auto& [colliders, hooked, near, frames, triangles, contacts, gaps, element_finder] = finder;
+  auto& [colliders, hooked, hooked_near, near, frames, triangles, contacts, gaps, element_finder] = finder;
   list_solid_colliders(t, colliders);
   list_hooked(t, hooked);
+  list_hooked_near(t, hooked_near);
   state::Contacts::for_each_column(contacts, [](auto& column) { column.clear(); });
   element_finder.contacts.clear();
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
@@ -301,7 +309,8 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
     const state::ColliderShape& shape = *frame.shape;
     const Vec3 place = t.particles.position[particle].x;
     const Vec3 x = frame.to_shape(place);
-    const Real radius = t.particles.position[particle].radius;
+    const Real radius = touching_radius(scratch.buffers().hooked_near, contacts.object[first],
+                                        contacts.body[first], t.particles.position[particle].radius);
     const Vec3 arm = place - frame.center;
     const Vec3 velocity = state::velocity_now(t.bodies, contacts.body[first], arm);
     if (shape.shape.kind != ShapeKind::kMesh) {

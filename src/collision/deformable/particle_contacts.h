@@ -39,10 +39,10 @@ void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& ta
 /// range that holds the first of them.
 void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scratch, state::Tables& tables);
 
-/// Points of an object, counted within it, whose centers are inside a body or less than half their radius
-/// outside it. In order.
-[[nodiscard]] std::vector<std::uint32_t> points_inside(const state::Tables& tables, std::uint32_t object,
-                                                       std::uint32_t body);
+/// Notes which points of the object at one end of a hook are inside the body at the other end, or less than
+/// half their radius outside it if the two may not touch anyhow. Of a ball it also notes how near the others
+/// are, which is where they touch that body.
+void note_hooked_points(const state::Tables& tables, state::Hook& hook);
 
 /// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Tests all pairs.
 [[nodiscard]] double largest_penetration(const state::Tables& tables);

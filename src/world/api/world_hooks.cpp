@@ -75,9 +75,7 @@ HookId enter_hook(Tables& t, std::size_t row) {
   Hook& hook = t.hooks[row];
   const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(row));
   hook.slot = id.slot;
-  const std::uint32_t body = hook.other_end().body;
-  if (hook.holds_point() && body != state::HookPlace::kWorld && !hook.collide)
-    hook.inside = collision::points_inside(t, hook.point_end().object, body);
+  collision::note_hooked_points(t, hook);
   world::wake_ends(hook, t.bodies);
   return id;
 }
