@@ -119,6 +119,47 @@ TEST_SUITE("world/surface_contacts") {
     CHECK(mean_of(room.world.positions(std::get<SolidId>(room.surfaces.back()))).y > 0.2);
   }
 
+  TEST_CASE("intersect: solids by shape matching rest on a net and on each other") {
+    for (const bool on_net : {true, false}) {
+      CAPTURE(on_net);
+      Room room;
+      if (on_net) {
+        ClothDesc net = sheet(16, {0, 0.3, 0});
+        net.areal_density = Real(4);
+        net.self_contact = false;
+        for (std::uint32_t i = 0; i < 16; ++i) {
+          for (const std::uint32_t point : {i, 240 + i, 16 * i, 16 * i + 15})
+            net.pins.push_back({.point = point});
+        }
+        room.add(net);
+      } else {
+        room.add_ground();
+      }
+      SolidDesc cube;
+      cube.elasticity = SolidDesc::Elasticity::kShapeMatching;
+      cube.cells = {3, 3, 3};
+      cube.size = {Real(0.1), Real(0.1), Real(0.1)};
+      cube.match_hz = Real(40);
+      cube.match_damping_ratio = Real(1);
+      cube.density = Real(200);
+      const double floor = on_net ? 0.3 : 0;
+      for (int i = 0; i < 2; ++i) {
+        cube.position = {0.002 * i, floor + 0.06 + 0.11 * i, 0};
+        room.add(cube);
+      }
+      const Run result = run(room, 180);
+      CHECK(result.crossing == 0);
+      const auto height = [&](std::size_t from_last) {
+        const Surface& surface = room.surfaces[room.surfaces.size() - from_last];
+        return mean_of(room.world.positions(std::get<SolidId>(surface))).y;
+      };
+      CHECK(height(2) > floor + 0.02);
+      // One cube and a thickness above the other; cubes of 40 Hz give way by about g / w^2 = 0.2 mm.
+      CHECK(height(1) - height(2) ==
+            doctest::Approx(0.1 + static_cast<double>(cube.thickness)).epsilon(0.01));
+    }
+  }
+
   TEST_CASE("intersect: sheets that meet at 40 m/s do not pass in 300 frames, and gain no energy") {
     Room room = fast_sheets();
     const double before = room.world.measure().energy.kinetic;

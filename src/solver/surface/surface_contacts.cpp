@@ -19,7 +19,7 @@ std::size_t vertex_count(const SurfaceContacts& contacts, const SurfaceGroup& gr
 
 bool has_surface(const state::Deformable& object) {
   if (object.kind == PointRef::Kind::kRope) return object.touches_surfaces;
-  return object.surface.rest_points && object.triangles.count + object.tetrahedra.count > 0;
+  return object.surface.rest_points != nullptr;
 }
 
 /// Whether some surface may touch another, or itself.
