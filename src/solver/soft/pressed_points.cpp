@@ -426,8 +426,8 @@ void settle_pressed_points(Real h, TetrahedronBlocks& tetrahedra, state::Tables&
     const Real rate = length(sliding);
     // Both yield by their masses: a light body that got all of what a heavy point lost would gain energy.
     const auto mass = [&](Vec3 direction) {
-      return Real(1) / (point.inverse_mass +
-                        inverse_mass_at(t.bodies, point.holder, direction, contacts.lever[row]));
+      return Real(1) /
+             (point.inverse_mass + inverse_mass_at(t.bodies, point.holder, direction, contacts.lever[row]));
     };
     Vec3 impulse = mass(n) * (-along - std::max(contacts.separation[row], Real(0)) / h) * n;
     if ((point.stuck & bit_of(point, row)) != 0 && rate > Real(0))

@@ -31,7 +31,7 @@ inline constexpr double kMotionError = 1e-4;
 /// 100 GPa for one set of contacts; another set is solved while half of them are left. Smaller: larger solids
 /// yield; with 800 two yielding balls of 300 MPa to 1 GPa that met were not solved in two substeps. Larger:
 /// what never comes to a solution costs as much.
-inline constexpr int kMostStiffSolidDirections = 4000;
+inline constexpr int kMostStiffSolidDirections = 1600;
 
 /// Stiffness of the contact of two solids in their solution, over the mass with which their points resist
 /// [ratio]. Smaller: more rounds until contacts keep their speed. With 20 and 100 two cubes of 100 MPa on
