@@ -323,6 +323,58 @@ TEST_SUITE("world/rope_surfaces") {
     CHECK(rms_of(room.world.velocities(lying)) < 0.3);
   }
 
+  namespace {
+
+  /// Largest relative change of length of a segment of a rope whose segments are equally long.
+  double largest_stretch(const World& world, RopeId id, double rest) {
+    const PointView x = world.positions(id);
+    double most = 0;
+    for (std::size_t i = 0; i + 1 < x.size(); ++i)
+      most = std::max(most, std::abs(length(x[i + 1] - x[i]) / rest - 1));
+    return most;
+  }
+
+  /// Adds a box that is hooked to a point of a rope, its center at the hook.
+  BodyId hang(Room& room, RopeId rope, std::uint32_t at, double mass) {
+    const DVec3 place = room.world.positions(rope)[at];
+    BodyDesc box = {.kind = BodyKind::kDynamic};
+    box.shape = Shape::box({Real(0.05), Real(0.05), Real(0.05)});
+    box.mass = static_cast<Real>(mass);
+    box.position = place;
+    const auto body = room.world.add_body(box);
+    REQUIRE(body);
+    HookDesc hook;
+    hook.a.body = body.value();
+    hook.b.point = point(rope, at);
+    hook.anchor = place;
+    REQUIRE(room.world.add_hook(hook));
+    return body.value();
+  }
+
+  }  // namespace
+
+  TEST_CASE("intersect: a rope that bears a body is not stretched by a rope that is thrown at it") {
+    for (const double speed : {1.0, 5.0}) {
+      CAPTURE(speed);
+      Room room;
+      RopeDesc line = straight({0, 1, 0}, {0, 0.2, 0}, 20);
+      line.pins = {{.point = 0}};
+      const RopeId taut = room.add(line);
+      hang(room, taut, 20, 5);
+      RopeDesc light = straight({0.03, 0.61, -0.1}, {0.03, 0.63, 0.1}, 10);
+      light.velocity = {static_cast<Real>(-speed), 0, 0};
+      room.add(light);
+      const double before = room.world.measure().energy.total();
+      double most = 0;
+      for (int i = 0; i < 60; ++i) {
+        CHECK(run(room, 1).held_back == 0);
+        most = std::max(most, largest_stretch(room.world, taut, 0.04));
+        CHECK(room.world.measure().energy.total() < before + 1e-3);
+      }
+      CHECK(most < 0.005);
+    }
+  }
+
   TEST_CASE("filters keep a rope from a cloth") {
     const auto height_after = [](FilterDesc filter) {
       Room room;
