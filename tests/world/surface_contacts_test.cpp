@@ -270,7 +270,8 @@ TEST_SUITE("world/surface_contacts") {
       CHECK(result.crossing == 0);
       const Measurement after = room.world.measure();
       const double size = 27 * 5.0;  // Momentum of one of them [N s].
-      CHECK(result.unconverged == 0);
+      // At 10 GPa directions run out in the blow, which is counted.
+      CHECK((result.unconverged > 0) == (young_modulus > Real(1e9)));
       CHECK(length(after.momentum - before.momentum) < 1e-4 * size);
       // Friction acts on both surfaces, which are half a thickness away from where they touch.
       CHECK(length(after.angular_momentum - before.angular_momentum) < 0.02 * size);
