@@ -267,8 +267,9 @@ enum class HookKind : std::uint8_t {
   kDistance,  ///< The distance of two points stays within `limits`, or as it was if there are none.
   kWheel,     ///< b slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
   kSixDegrees,  ///< Each of the six `freedoms` has its own limits, spring and motor.
-  /// b slides along rope a, between its ends: a bead on a string. `anchor` says where it is. If the rope
-  /// breaks so that b is left on a single point, the hook is gone, and no event tells it.
+  /// b slides along rope a, between its ends: a bead on a string. `anchor` says where it is, within a tenth
+  /// of a segment of the rope or its thickness; what is farther off is refused. If the rope breaks so that b
+  /// is left on a single point, the hook is gone, and no event tells it.
   kRopeSlide,
 };
 
