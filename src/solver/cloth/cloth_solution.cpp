@@ -348,6 +348,7 @@ void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint
   }
   const double least = kLeastSpinShare * (inertia.xx + inertia.yy + inertia.zz);
   const DVec3 turn = math::inverse(inertia + Symmetric3<double>::diagonal(least)) * spin_made;
+  if (!is_finite(made) || !is_finite(turn)) return;  // One point that is not a number spoils no other.
   for (std::size_t i = 0; i < points_; ++i) v_[i] -= (1 / mass) * made + cross(turn, x_[i] - center);
 }
 
@@ -356,6 +357,7 @@ bool ClothSolution::find_minimum() {
   energy_ = energy(v_);
   directions_ = 0;
   accepted_ = -1;
+  if (!std::isfinite(energy_)) return false;  // Some point is not a number: it is quarantined in the end.
   int renewals = 0;
   for (int step = 0; step < kMostClothSteps; ++step) {
     linearize_freely();
@@ -387,7 +389,7 @@ bool ClothSolution::solve(const state::Deformable& cloth, std::span<const Vec3> 
   bodies_.move_along(v_);
   const bool is_solved = find_minimum();
   bodies_.move_along(from_passes_);
-  if (!is_solved && energy(from_passes_) < energy_) std::swap(v_, from_passes_);
+  if (!is_solved && !(energy(from_passes_) >= energy_)) std::swap(v_, from_passes_);
   if (!bodies_.empty()) {
     linearize_freely();
     bodies_.note_impulses(v_, unsprung_, residual_, is_solved, presses);

@@ -18,7 +18,7 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 
 /// Pairs of features whose boxes overlap, of one kind, until their nearest points are found.
 struct SurfaceCandidates {
-  static constexpr std::uint32_t kRoom = 512;
+  static constexpr std::uint32_t kRoom = 528;
   static constexpr std::uint32_t kTurned = 0x80000000;
 
   alignas(64) std::uint32_t record[4][kRoom + kLanes];  // Four times the vertices.

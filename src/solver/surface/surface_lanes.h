@@ -164,7 +164,9 @@ class SurfaceSearcher {
   using Tests = BoxTests<Number>;
 
   static constexpr int kDeepest = 256;
-  static constexpr std::uint32_t kMostOfPair = 64;  // Candidates that one pair of cells can have.
+  static constexpr std::uint32_t kMostOfPair =
+      64;  // Candidates that one pair of cells has, but of torn ropes.
+  static constexpr std::uint32_t kMostOfParts = 16;  // Candidates that one pair of parts can have.
   static constexpr std::uint32_t kCell = SurfaceNode::kCell;
 
   HWY_INLINE void push(std::uint32_t a, std::uint32_t b) { stack_[depth_++] = {a, b}; }
@@ -201,11 +203,12 @@ class SurfaceSearcher {
     const SurfaceCell& cell_a = s_.mesh_a->cells[a];
     const SurfaceCell& cell_b = s_.mesh_b->cells[b];
     const bool same = is_self_ && a == b;
-    if (std::max(faces_.count, edges_.count) + kMostOfPair > SurfaceCandidates::kRoom) flush();
+    if (std::max(faces_.count, edges_.count) + kMostOfPair + kMostOfParts > SurfaceCandidates::kRoom) flush();
     for (std::uint32_t i = cell_a.first_part; i < cell_a.end_part; ++i) {
       const std::uint32_t first = same ? i : cell_b.first_part;
       for (std::uint32_t j = first; j < cell_b.end_part; ++j) {
         const SurfaceSide side_b = {s_.mesh_b->parts[j], s_.boxes_b->parts[j]};
+        make_room_in(faces_);
         Tests::add_faces({s_.mesh_a->parts[i], s_.boxes_a->parts[i]}, side_b, same && i == j, faces_);
       }
       if (cell_b.end_part - cell_b.first_part == 1) {
@@ -220,8 +223,14 @@ class SurfaceSearcher {
     }
   }
 
+  /// Cells of a torn rope may have any number of parts, and more candidates than others.
+  HWY_INLINE void make_room_in(const SurfaceCandidates& batch) {
+    if (batch.count + kMostOfParts > SurfaceCandidates::kRoom) flush();
+  }
+
   HWY_INLINE void test_edges(std::uint32_t a, std::uint32_t b, bool same, unsigned pairs) {
     const SurfaceSide side_b = {s_.mesh_b->parts[b], s_.boxes_b->parts[b]};
+    make_room_in(edges_);
     Tests::add_edges({s_.mesh_a->parts[a], s_.boxes_a->parts[a]}, side_b, same ? pairs & kPairsOfOne : pairs,
                      edges_);
   }
