@@ -323,6 +323,46 @@ TEST_SUITE("world/rope_surfaces") {
     CHECK(rms_of(room.world.velocities(lying)) < 0.3);
   }
 
+  TEST_CASE("a rope that is cut into single points lies on the few cells of a cloth") {
+    Room room;
+    ClothDesc floor;
+    floor.columns = floor.rows = 3;
+    floor.width = floor.height = Real(0.4);
+    floor.corner = {-0.2, 0, -0.2};
+    floor.row_direction = {Real(0), Real(0), Real(1)};
+    for (std::uint32_t i = 0; i < 9; ++i) floor.pins.push_back({i});
+    room.add(floor);
+    RopeDesc coil;
+    coil.touches_surfaces = true;
+    coil.total_mass = Real(0.05);
+    coil.radius = Real(0.002);
+    coil.pins.clear();
+    constexpr int kPoints = 400;
+    for (int i = 0; i < kPoints; ++i) {
+      const double from_axis = 0.02 + 0.002 * std::sqrt(i);
+      coil.points.push_back({from_axis * std::cos(2.4 * i), 0.02 + 5e-5 * i, from_axis * std::sin(2.4 * i)});
+    }
+    const RopeId rope = room.add(coil);
+    std::size_t cut = 0;
+    for (int i = 0; i + 1 < kPoints; ++i) {
+      const PointView x = room.world.positions(rope);
+      const DVec3 middle = 0.5 * (x[i] + x[i + 1]);
+      const DVec3 side = 1e-4 * normalize(cross(x[i + 1] - x[i], DVec3{0, 1, 0}));
+      const DVec3 down = {0, 1e-4, 0};
+      const auto made = room.world.cut({.from = {middle - side + down, middle + side + down},
+                                        .to = {middle - side - down, middle + side - down},
+                                        .ropes = {rope}});
+      REQUIRE(made);
+      for (const RopeCut& one : made.value().ropes) cut += one.segments.size();
+    }
+    REQUIRE(cut == kPoints - 1);
+    for (int i = 0; i < 120; ++i) CHECK(room.world.step(kFrame).healthy());
+    const PointView x = room.world.positions(rope);
+    double lowest = 1;
+    for (std::size_t i = 0; i < x.size(); ++i) lowest = std::min(lowest, x[i].y);
+    CHECK(lowest > 0);
+  }
+
   namespace {
 
   /// Largest relative change of length of a segment of a rope whose segments are equally long.

@@ -159,6 +159,8 @@ class BoxFitter {
   void fit_part(const SurfacePart& part, SurfacePartBoxes& boxes, SurfaceBox& all) const {
     for (std::size_t lane = 0; lane < 4; ++lane) {
       boxes.vertices.set(lane, lane < part.vertices ? at(part.vertex[lane]) : SurfaceBox4::none());
+      // Points of a rope between segments that are gone belong to no edge.
+      if (mesh_.is_rope() && lane < part.vertices) all = join(all, at(part.vertex[lane]));
       if (lane >= part.edges) {
         boxes.edges.set(lane, SurfaceBox4::none());
         continue;
