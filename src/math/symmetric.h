@@ -35,6 +35,13 @@ constexpr Symmetric3<T> axial(Vector3<T> n, T along, T across) {
           across + d * n.y * n.y, d * n.y * n.z, across + d * n.z * n.z};
 }
 
+/// Inertia about the origin of a point of this mass at r.
+template <class T>
+constexpr Symmetric3<T> inertia_of_point(T mass, Vector3<T> r) {
+  return {mass * (r.y * r.y + r.z * r.z), -mass * r.x * r.y, -mass * r.x * r.z,
+          mass * (r.x * r.x + r.z * r.z), -mass * r.y * r.z, mass * (r.x * r.x + r.y * r.y)};
+}
+
 /// Returns a power of two that brings x to about 1. Products of three numbers scaled by it neither overflow
 /// nor vanish.
 constexpr float power_to_one(float x) {

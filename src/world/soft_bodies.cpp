@@ -69,9 +69,7 @@ WholeMotion whole_motion(const Tables& t, const Deformable& object, const SoftFo
     const DVec3 p = place_at(t, object, row) - whole.center;
     const DVec3 q = vector_cast<double>(form.points[i]);
     whole.spin += m * cross(p, vector_cast<double>(t.particles.velocity[row].v) - whole.v);
-    whole.inertia =
-        whole.inertia + Inertia{m * (p.y * p.y + p.z * p.z), -m * p.x * p.y, -m * p.x * p.z,
-                                m * (p.x * p.x + p.z * p.z), -m * p.y * p.z, m * (p.x * p.x + p.y * p.y)};
+    whole.inertia = whole.inertia + math::inertia_of_point(m, p);
     turn = turn + Matrix3<double>{m * q.x * p, m * q.y * p, m * q.z * p};
   }
   whole.omega = math::inverse(whole.inertia) * whole.spin;
@@ -181,10 +179,8 @@ void move_named_places(std::uint32_t body, const SoftForm& before, const SoftFor
 state::BodyMass mass_now(const SoftForm& form, const state::BodyMass& before) {
   Inertia inertia = {};
   for (std::size_t i = 0; i < form.points.size(); ++i) {
-    const auto m = static_cast<double>(form.mass[i]);
-    const DVec3 p = vector_cast<double>(form.points[i]);
-    inertia = inertia + Inertia{m * (p.y * p.y + p.z * p.z), -m * p.x * p.y, -m * p.x * p.z,
-                                m * (p.x * p.x + p.z * p.z), -m * p.y * p.z, m * (p.x * p.x + p.y * p.y)};
+    inertia = inertia +
+              math::inertia_of_point(static_cast<double>(form.mass[i]), vector_cast<double>(form.points[i]));
   }
   const geometry::PrincipalAxes axes = geometry::principal_axes(inertia);
   return {.center = before.center,

@@ -96,7 +96,7 @@ bool enters_jelly(std::uint32_t seed) {
   return through;
 }
 
-/// A net of ropes along both sides, hooked where they cross. `points` become those of the crossings, by row.
+/// A net of ropes along both sides, hooked where they cross: the ropes of one side, and how many there are.
 struct Net {
   std::vector<RopeId> ropes = {};
   std::uint32_t count = 0;

@@ -59,9 +59,6 @@ void make_frames(const state::Tables& tables, std::span<const std::uint32_t> col
 /// A particle and a body that a hook keeps from touching.
 using Hooked = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Lists the pairs that hooks hold together, with the points that were inside the body; for a rope along
-/// which a body slides, all its points. Sorted.
-
 /// A solid that a hook holds to a body which it may touch. Where it was nearer than by its thickness when it
 /// was hooked, it touches the body at that distance: hook and contact would strain against each other.
 struct HookedNear {
@@ -75,6 +72,8 @@ void list_hooked_near(const state::Tables& tables, std::vector<HookedNear>& near
 [[nodiscard]] Real touching_radius(const std::vector<HookedNear>& near, std::uint32_t object,
                                    std::uint32_t body, Real radius);
 
+/// Lists the pairs that hooks hold together, with the points that were inside the body; for a rope along
+/// which a body slides, all its points. Sorted.
 void list_hooked(const state::Tables& tables, std::vector<Hooked>& hooked);
 [[nodiscard]] bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body);
 

@@ -340,11 +340,7 @@ void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint
   for (std::size_t i = 0; i < points_; ++i) {
     const DVec3 r = x_[i] - center;
     spin_made += mass_[i] * cross(r, v_[i] - unsprung_[i]);
-    inertia =
-        inertia +
-        Symmetric3<double>{
-            mass_[i] * (r.y * r.y + r.z * r.z), -mass_[i] * r.x * r.y, -mass_[i] * r.x * r.z,
-            mass_[i] * (r.x * r.x + r.z * r.z), -mass_[i] * r.y * r.z, mass_[i] * (r.x * r.x + r.y * r.y)};
+    inertia = inertia + math::inertia_of_point(mass_[i], r);
   }
   const double least = kLeastSpinShare * (inertia.xx + inertia.yy + inertia.zz);
   const DVec3 turn = math::inverse(inertia + Symmetric3<double>::diagonal(least)) * spin_made;

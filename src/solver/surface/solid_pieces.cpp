@@ -33,11 +33,7 @@ void weigh(const state::Tables& t, base::DisjointSets& sets, SolidPiece& piece) 
   piece.center = piece.inverse_mass * sum;
   math::Symmetric3<double> inertia;
   for_points(t, sets, piece, [&](double inverse_mass, DVec3 x) {
-    const DVec3 r = x - piece.center;
-    const double m = 1 / inverse_mass;
-    inertia = inertia + math::Symmetric3<double>{
-                            m * (r.y * r.y + r.z * r.z), -m * r.x * r.y, -m * r.x * r.z,
-                            m * (r.x * r.x + r.z * r.z), -m * r.y * r.z, m * (r.x * r.x + r.y * r.y)};
+    inertia = inertia + math::inertia_of_point(1 / inverse_mass, x - piece.center);
   });
   piece.inverse_inertia = math::inverse(inertia);
 }

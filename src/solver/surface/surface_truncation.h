@@ -15,9 +15,9 @@ namespace hooke::solver {
 
 /// Changes where vertices went in this substep, so that no pair of the group crosses between: clips them
 /// to their cages, moves pairs that come too near apart along their normals, and holds back, at last, what
-/// does not come apart. Stiff solids are moved as wholes where that does, and the group keeps its momentum.
-/// A pair whose both ends are separated along the same normal does not meet on straight
-/// paths between them.
+/// does not come apart. Stiff solids are moved as wholes where that does. A group of solids alone that
+/// nothing holds keeps its momentum. A pair whose both ends are separated along the same normal does not meet
+/// on straight paths between them.
 void truncate_group(Real h, SurfaceContacts& contacts, SurfaceGroup& group, state::Tables& tables);
 
 }  // namespace hooke::solver
