@@ -485,7 +485,10 @@ struct ClothDesc {
   /// h^2 of it in a sheet that hangs, and 1.4 m / h^2 in one that is pulled at an edge, m being the mass of a
   /// point: cloth that is to stretch less needs more substeps, larger cells or more mass.
   Real stretch_stiffness = Real(1e4);
-  Real shear_stiffness = Real(2e3);  ///< Stiffness of each spring across a cell or a pair of triangles [N/m].
+  /// Stiffness of each spring across a cell or a pair of triangles [N/m]; a square of cells resists shear by
+  /// as much. Woven cloth has 20 to 280 (Kawabata), heavy denim 110. Stiffer than light points carry, a
+  /// draped sheet keeps what it cannot shear as strain.
+  Real shear_stiffness = Real(100);
   /// Resistance to bending, in the unit that `bend` says; in N m, the flexural rigidity of a sheet that bends
   /// about lines across it. By kAngle and kIsometric diagonals fold, too: a strip with free sides bends by up
   /// to a quarter more (hooke check I23), and one pass over light points that are much stiffer does not hold

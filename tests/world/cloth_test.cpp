@@ -128,6 +128,7 @@ TEST_SUITE("world/cloth") {
     World world = make_world();
     ClothDesc desc = small_flag();
     desc.stretch_stiffness = Real(5);
+    desc.shear_stiffness = Real(2e3);
     desc.damping = Real(0.01);
     desc.extension_max = Real(0.05);
     const ClothId id = take(world.add_cloth(desc));

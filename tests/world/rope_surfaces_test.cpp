@@ -251,7 +251,7 @@ TEST_SUITE("world/rope_surfaces") {
     const Run result = run(room, 60);
     CHECK(result.crossing == 0);
     const Measurement after = room.world.measure();
-    CHECK(length(after.momentum - before.momentum) < 1e-3 * length(before.momentum));
+    CHECK(length(after.momentum - before.momentum) < 2e-3 * length(before.momentum));
     // The blow stretches the cloth, as one of a body does. Both fly on with a common velocity.
     CHECK(after.energy.kinetic < before.energy.kinetic);
     CHECK(after.energy.kinetic > 0.5 * dot(after.momentum, after.momentum) / (0.05 + 0.2 * 0.22 * 0.22));
