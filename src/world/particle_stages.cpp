@@ -13,6 +13,7 @@
 #include "solver/solid/tetrahedron_solve.h"
 #include "solver/surface/joined_solids.h"
 #include "solver/surface/rope_loads.h"
+#include "solver/surface/solid_loads.h"
 #include "solver/surface/surface_contacts.h"
 #include "state/check_tables.h"
 #include "state/rope_chains.h"
@@ -326,8 +327,10 @@ void solve_yarns(WorldData& world) {
 }
 
 void find_pressed_cloths(WorldData& world, Real h) {
-  world.frame.cloths_left_to_contacts +=
-      solver::find_pressed_cloths(world.derived.cloth_bearings, world.tables, h, world.frame.loaded_cloths);
+  solver::SurfaceContacts& surfaces = world.frame.surfaces;
+  solver::list_solid_loads(world.tables, h, surfaces);
+  world.frame.cloths_left_to_contacts += solver::find_pressed_cloths(
+      world.derived.cloth_bearings, world.tables, h, surfaces.solid_loads, world.frame.loaded_cloths);
 }
 
 void find_loaded_cloths(WorldData& world) {
@@ -344,11 +347,15 @@ void solve_loaded_cloths(WorldData& world, Real h) {
   if (count == 0) return;
   loaded.solutions.resize(static_cast<std::size_t>(world.pool->workers()));
   loaded.is_unconverged.assign(loaded.cloths.size(), 0);
+  solver::SurfaceContacts& surfaces = world.frame.surfaces;
+  solver::note_solid_motion(world.tables, surfaces);
   for_ranges(*world.pool, count, 1, [&](Range range, int part) {
     for (int i = range.begin; i < range.end; ++i)
-      solver::solve_loaded_cloth(static_cast<std::size_t>(i), part, h, world.tables, loaded);
+      solver::solve_loaded_cloth(static_cast<std::size_t>(i), part, h, surfaces.solid_loads, world.tables,
+                                 loaded);
   });
   solver::release_cloth_presses(loaded.presses, world.tables);
+  solver::release_solid_loads(surfaces.solid_loads, world.tables);
   for (const std::uint8_t unconverged : loaded.is_unconverged) world.frame.cloths_unconverged += unconverged;
 }
 

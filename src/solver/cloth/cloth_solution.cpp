@@ -64,7 +64,8 @@ void ClothSolution::set_sizes() {
 
 void ClothSolution::take_springs(const state::Deformable& cloth, const state::Springs& springs) {
   const auto end = mass_.begin() + static_cast<std::ptrdiff_t>(points_);
-  rigid_ = kRigidOfCloth * (std::accumulate(mass_.begin(), end, 0.0) + bodies_.mass()) / (h_ * h_);
+  rigid_ =
+      kRigidOfCloth * (std::accumulate(mass_.begin(), end, 0.0) + bodies_.mass() + loads_.mass()) / (h_ * h_);
   springs_.clear();
   std::ptrdiff_t limited = 0;  // Limits stand in the order of the springs that they belong to.
   for (std::uint32_t row = cloth.springs.first; row < cloth.springs.end(); ++row) {
@@ -142,7 +143,7 @@ double ClothSolution::energy(std::span<const DVec3> v) const {
     const DVec3 rate = weighted_sum(bend, v);
     sum += bend.stiffness * (length_squared(q + h_ * rate) + h_ * bend.damping * length_squared(rate));
   }
-  return 0.5 * sum + bodies_.friction_energy(v);
+  return 0.5 * sum + bodies_.friction_energy(v) + loads_.energy(v);
 }
 
 /// Adds how isometric bends resist at v_.
@@ -188,6 +189,7 @@ void ClothSolution::linearize_freely() {
     per_diagonal_[spring.b] = per_diagonal_[spring.b] + own;
   }
   linearize_bends();
+  loads_.add(v_, residual_, per_diagonal_);
   bodies_.add_friction(v_, residual_, per_diagonal_);
 }
 
@@ -237,6 +239,7 @@ void ClothSolution::resist() {
     const DVec3 impulse = (h_ * (h_ + bend.damping) * bend.stiffness) * weighted_sum(bend, direction_);
     for (std::size_t k = 0; k < 4; ++k) image_[bend.points[k]] += bend.weight[k] * impulse;
   }
+  loads_.resist(direction_, image_);
   bodies_.resist(direction_, image_);
   bodies_.gather(image_);
 }
@@ -319,7 +322,7 @@ bool ClothSolution::go_down() {
 
 /// Takes back what momentum and angular momentum the error has made, where nothing holds the cloth: springs
 /// keep them.
-void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint32_t first_particle) {
+void ClothSolution::keep_momentum(const Problem& problem, std::uint32_t first_particle) {
   constexpr double kLeastSpinShare = 1e-9;  // of inertia, for points on a line
   if (is_held_) return;
   double mass = 0;
@@ -332,10 +335,20 @@ void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint
   center = (1 / mass) * center;
   Symmetric3<double> inertia = {};
   DVec3 spin_made;
-  for (const ClothPress& press : presses) {
+  for (const ClothPress& press : problem.presses) {
     made += press.push;
     const DVec3 center_of_body = x_[press.particle - first_particle] - press.lever;
     spin_made += cross(center_of_body - center, press.push) + press.turn;
+  }
+  for (const ClothLoad& load : problem.loads) {
+    if (load.object != problem.object) continue;
+    DVec3 place;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (load.weight[k] != 0) place += load.weight[k] * x_[load.particle[k] - first_particle];
+    }
+    const DVec3 given = load.is_whole ? -load.push : load.impulse;
+    made -= given;
+    spin_made += load.turn - cross(place - load.lever - center, given);
   }
   for (std::size_t i = 0; i < points_; ++i) {
     const DVec3 r = x_[i] - center;
@@ -348,6 +361,12 @@ void ClothSolution::keep_momentum(std::span<const ClothPress> presses, std::uint
   for (std::size_t i = 0; i < points_; ++i) v_[i] -= (1 / mass) * made + cross(turn, x_[i] - center);
 }
 
+/// Finds anew what holds, slides and is let go. Returns whether anything changed.
+bool ClothSolution::renew_touches() {
+  const bool loads_change = loads_.renew(v_);
+  return bodies_.renew(v_, residual_, per_diagonal_) || loads_change;
+}
+
 /// Goes from v_ to the minimum, while points are let go and taken hold of. Returns whether it came there.
 bool ClothSolution::find_minimum() {
   energy_ = energy(v_);
@@ -357,7 +376,7 @@ bool ClothSolution::find_minimum() {
   int renewals = 0;
   for (int step = 0; step < kMostClothSteps; ++step) {
     linearize_freely();
-    if (step > 0 && renewals < kMostPressRenewals && bodies_.renew(v_, residual_, per_diagonal_)) {
+    if (step > 0 && renewals < kMostPressRenewals && renew_touches()) {
       ++renewals;
       bodies_.move_along(v_);
       energy_ = energy(v_);
@@ -370,29 +389,34 @@ bool ClothSolution::find_minimum() {
   return false;
 }
 
-bool ClothSolution::solve(const state::Deformable& cloth, std::span<const Vec3> unsprung,
-                          std::span<ClothPress> presses, bool with_bends, double h, state::Tables& tables) {
-  h_ = h;
-  take_points(cloth, unsprung, tables);
-  bodies_.take(cloth.particles.first, presses, tables, unsprung_, mass_);
+bool ClothSolution::solve(const Problem& problem, state::Tables& tables) {
+  const state::Deformable& cloth = tables.objects[problem.object];
+  const std::uint32_t first = cloth.particles.first;
+  h_ = problem.h;
+  take_points(cloth, problem.unsprung, tables);
+  bodies_.take(first, problem.presses, tables, unsprung_, mass_);
+  loads_.take(problem.object, problem.loads, h_, tables, unsprung_, mass_);
   is_held_ = is_held_ || bodies_.is_held();
   set_sizes();
   take_springs(cloth, tables.springs);
   bends_.clear();
-  if (with_bends) take_bends(cloth, tables.bends);
+  if (problem.with_bends) take_bends(cloth, tables.bends);
   from_passes_ = v_;
   v_ = unsprung_;
   bodies_.move_along(v_);
+  loads_.begin(v_);
   const bool is_solved = find_minimum();
   bodies_.move_along(from_passes_);
-  if (!is_solved && !(energy(from_passes_) >= energy_)) std::swap(v_, from_passes_);
+  const bool keeps_passes = !is_solved && !(energy(from_passes_) >= energy_);
+  if (keeps_passes) std::swap(v_, from_passes_);
   if (!bodies_.empty()) {
     linearize_freely();
-    bodies_.note_impulses(v_, unsprung_, residual_, is_solved, presses);
+    bodies_.note_impulses(v_, unsprung_, residual_, is_solved, problem.presses);
   }
-  keep_momentum(presses, cloth.particles.first);
+  if (!keeps_passes) loads_.note_impulses(v_, unsprung_, problem.loads);
+  keep_momentum(problem, first);
   for (std::size_t i = 0; i < points_; ++i) {
-    if (mass_[i] > 0) tables.particles.velocity[cloth.particles.first + i].v = vector_cast<Real>(v_[i]);
+    if (mass_[i] > 0) tables.particles.velocity[first + i].v = vector_cast<Real>(v_[i]);
   }
   return is_solved;
 }

@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 
 #include "math/symmetric.h"
+#include "solver/cloth/cloth_loads.h"
 #include "solver/cloth/cloth_presses.h"
 #include "state/tables.h"
 
@@ -19,7 +20,8 @@
 /// least, u being what its points would do without its springs, and E the energies of these (the implicit
 /// Euler step as a minimum; Martin, Thomaszewski, Grinspun and Gross 2011). A load of any mass is felt
 /// through all of the cloth, and what is stopped short of the minimum can only lose energy. Bodies that press
-/// on points are unknowns too (solver/cloth/cloth_presses.h).
+/// on points are unknowns too (solver/cloth/cloth_presses.h), and solids add to the sum what they resist
+/// (solver/cloth/cloth_loads.h).
 ///
 /// Newton's method finds it. Each step solves for the change of velocities by conjugate gradients, which the
 /// blocks of three by three on the diagonal precondition (Hestenes and Stiefel 1952), and is halved until the
@@ -33,12 +35,20 @@ namespace hooke::solver {
 class ClothSolution {
  public:
   /// Gives the points of a cloth the velocities of the solution, or leaves them those that they have where
-  /// the solution ends before it is better. `unsprung` holds u [m/s] by point of the cloth. `with_bends` says
-  /// whether isometric bends count among its springs. Bodies of `presses`, which are in order of particles,
-  /// hold points; what they give is written there, and bodies stay as they are. Returns whether the error
-  /// came down to kLoadedClothError; the velocities are changed in any case.
-  [[nodiscard]] bool solve(const state::Deformable& cloth, std::span<const Vec3> unsprung,
-                           std::span<ClothPress> presses, bool with_bends, double h, state::Tables& tables);
+  /// the solution ends before it is better. `unsprung` holds u [m/s] by point of the cloth, `object` is its
+  /// row. `with_bends` says whether isometric bends count among its springs. Bodies of `presses`, which are
+  /// in order of particles, hold points, and those of `loads` that are of the cloth press on it; what they
+  /// give is written there, and bodies and solids stay as they are. Returns whether the error came down to
+  /// kLoadedClothError; the velocities are changed in any case.
+  struct Problem {
+    std::uint32_t object = 0;
+    std::span<const Vec3> unsprung;
+    std::span<ClothPress> presses;
+    std::span<ClothLoad> loads;
+    bool with_bends = false;
+    double h = 0;  ///< Length of the substep [s].
+  };
+  [[nodiscard]] bool solve(const Problem& problem, state::Tables& tables);
 
  private:
   /// A spring, and its limit if it has one.
@@ -84,8 +94,9 @@ class ClothSolution {
   [[nodiscard]] bool may_go_on() const;
   [[nodiscard]] bool find_change();
   [[nodiscard]] bool go_down();
+  [[nodiscard]] bool renew_touches();
   [[nodiscard]] bool find_minimum();
-  void keep_momentum(std::span<const ClothPress> presses, std::uint32_t first_particle);
+  void keep_momentum(const Problem& problem, std::uint32_t first_particle);
 
   double h_ = 0;         ///< Length of the substep [s].
   double rigid_ = 0;     ///< Stiffness of what is rigid [N/m].
@@ -99,6 +110,7 @@ class ClothSolution {
   std::vector<Resistance> resistances_;  ///< By spring.
   std::vector<Bend> bends_;
   PressingBodies bodies_;
+  ClothLoads loads_;
   std::size_t points_ = 0;  ///< Their number.
   // By point.
   std::vector<DVec3> x_;  ///< Positions when the substep begins [m].

@@ -51,6 +51,10 @@ inline constexpr double kFrictionErrorOnCloth = 0.1;
 /// sticks [ratio]. Chosen by hand; no measurement is recorded.
 inline constexpr double kMostDragOnCloth = 100;
 
+/// Mass of a solid that presses on points of a cloth, over theirs, that its solution takes at most [ratio]:
+/// what is held has no other bound. Chosen by hand; no measurement is recorded.
+inline constexpr double kMostLoadOnCloth = 5e3;
+
 /// Momentum that a cloth may lack as a whole, over what its springs have changed [ratio]; what is left is
 /// shared out by mass. Larger: with 1e-2 a point of a hammock went through the floor.
 inline constexpr double kClothMotionError = 1e-3;

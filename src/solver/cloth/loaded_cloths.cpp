@@ -203,6 +203,44 @@ void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& t
   }
 }
 
+/// Leaves to contacts what drop_wild_presses would of solids.
+void leave_wild_loads(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+                      std::span<ClothLoad> loads) {
+  std::size_t known = bearings.size();  // Of what follows.
+  DVec3 velocity;
+  bool is_wild = false;
+  for (ClothLoad& load : loads) {
+    const std::size_t i = bearing_with(bearings, tables, load.particle[0]);
+    if (i != known && i < bearings.size()) {
+      const state::Deformable& cloth = tables.objects[bearings[i].object];
+      velocity = mean_velocity(tables, cloth);
+      is_wild = cloth.gas > 0 || is_drawn_out(tables, cloth);
+    }
+    known = i;
+    load.is_left =
+        i == bearings.size() || is_wild ||
+        length(load.surface - velocity) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
+  }
+}
+
+/// Marks the cloths on which too much of solids lies, and leaves what lies on others to contacts.
+void mark_loads(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
+                std::span<ClothLoad> loads, LoadedCloths& loaded) {
+  if (loads.empty()) return;
+  leave_wild_loads(bearings, tables, h, loads);
+  const auto gravity = vector_cast<double>(tables.desc.gravity);
+  const double size = length(gravity);
+  loaded.pressing_masses.assign(bearings.size(), 0);
+  for (const ClothLoad& load : loads) {
+    if (load.is_left || !(load.inverse_mass > 0)) continue;
+    const std::size_t i = bearing_with(bearings, tables, load.particle[0]);
+    double& mass = loaded.pressing_masses[i];
+    mass += (size > 0 ? std::max(0.0, dot(load.normal, gravity)) / size : 1) / load.inverse_mass;
+    if (mass > static_cast<double>(bearings[i].most_mass))
+      loaded.marks[i] = std::max(loaded.marks[i], kPressed);
+  }
+}
+
 /// Whether anything but points of its own may load a cloth in this substep.
 bool may_be_loaded(const state::Tables& tables) {
   return !tables.hooks.empty() ||
@@ -243,7 +281,7 @@ std::vector<ClothBearing> find_bearings(const state::Tables& tables) {
 }
 
 std::uint32_t find_pressed_cloths(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
-                                  LoadedCloths& loaded) {
+                                  std::span<ClothLoad> loads, LoadedCloths& loaded) {
   loaded.presses.clear();
   loaded.marks.clear();
   for (const ClothBearing& bearing : bearings)
@@ -251,7 +289,9 @@ std::uint32_t find_pressed_cloths(std::span<const ClothBearing> bearings, const 
   loaded.pressing.clear();
   const bool any_heavy = std::any_of(bearings.begin(), bearings.end(),
                                      [](const ClothBearing& bearing) { return bearing.has_heavy_points; });
-  if (bearings.empty() || (!any_heavy && !may_be_loaded(tables))) return 0;
+  if (bearings.empty()) return 0;
+  mark_loads(bearings, tables, h, loads, loaded);
+  if (loads.empty() && !any_heavy && !may_be_loaded(tables)) return 0;
   find_cloth_presses(tables, h, loaded.presses);
   drop_wild_presses(bearings, tables, h, loaded);
   drop_hooked_presses(tables, loaded);
@@ -304,17 +344,23 @@ void end_outside_forces(OutsideForces forces, state::Tables& tables, LoadedCloth
   });
 }
 
-void solve_loaded_cloth(std::size_t i, int part, Real h, state::Tables& tables, LoadedCloths& loaded) {
+void solve_loaded_cloth(std::size_t i, int part, Real h, std::span<ClothLoad> loads, state::Tables& tables,
+                        LoadedCloths& loaded) {
   HOOKE_ASSERT(i < loaded.cloths.size() && static_cast<std::size_t>(part) < loaded.solutions.size());
   const LoadedCloth& cloth = loaded.cloths[i];
-  const state::Deformable& object = tables.objects[cloth.object];
-  const auto unsprung = std::span(loaded.unsprung).subspan(cloth.first, object.particles.count);
+  const state::Rows points = tables.objects[cloth.object].particles;
   const auto comes_before = [](const ClothPress& press, std::uint32_t row) { return press.particle < row; };
   const auto first =
-      std::lower_bound(loaded.presses.begin(), loaded.presses.end(), object.particles.first, comes_before);
-  const auto end = std::lower_bound(first, loaded.presses.end(), object.particles.end(), comes_before);
+      std::lower_bound(loaded.presses.begin(), loaded.presses.end(), points.first, comes_before);
+  const auto end = std::lower_bound(first, loaded.presses.end(), points.end(), comes_before);
   if (!loaded.solutions[static_cast<std::size_t>(part)].solve(
-          object, unsprung, std::span(first, end), cloth.with_bends, static_cast<double>(h), tables))
+          {.object = cloth.object,
+           .unsprung = std::span(loaded.unsprung).subspan(cloth.first, points.count),
+           .presses = std::span(first, end),
+           .loads = loads,
+           .with_bends = cloth.with_bends,
+           .h = static_cast<double>(h)},
+          tables))
     loaded.is_unconverged[i] = 1;
 }
 

@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include "solver/cloth/cloth_loads.h"
 #include "solver/cloth/cloth_presses.h"
 #include "solver/cloth/cloth_solution.h"
 #include "solver/soft/pass_masses.h"
@@ -63,9 +64,11 @@ struct LoadedCloths {
 /// Finds the cloths that are loaded by bodies which press on points, in this substep of length `h` [s], and
 /// which bodies these are. Not among them are bodies that would move by more than half a link within the
 /// substep, those hooked to the cloth, and what presses on tangled cloths or on those that hold gas. Returns
-/// the number of cloths on which such a body presses with more mass than they bear, except by hooks.
+/// the number of cloths on which such a body presses with more mass than they bear, except by hooks. `loads`
+/// are the solids that press on cloths; those that are to be left to contacts are marked.
 [[nodiscard]] std::uint32_t find_pressed_cloths(std::span<const ClothBearing> bearings,
-                                                const state::Tables& tables, Real h, LoadedCloths& loaded);
+                                                const state::Tables& tables, Real h,
+                                                std::span<ClothLoad> loads, LoadedCloths& loaded);
 
 /// Adds those that are loaded by points of their own or by LoadedCloths::lent, and notes the velocities of
 /// the points of all. Call it after find_pressed_cloths.
@@ -80,7 +83,9 @@ enum class OutsideForces : std::uint8_t { kBends, kGas };
 void begin_outside_forces(OutsideForces forces, state::Tables& tables, LoadedCloths& loaded);
 void end_outside_forces(OutsideForces forces, state::Tables& tables, LoadedCloths& loaded);
 
-/// Solves cloth `i` of those loaded for a substep of length `h` [s]. `part` says whose memory it may use.
-void solve_loaded_cloth(std::size_t i, int part, Real h, state::Tables& tables, LoadedCloths& loaded);
+/// Solves cloth `i` of those loaded for a substep of length `h` [s], and writes to `loads` what solids give
+/// it. `part` says whose memory it may use.
+void solve_loaded_cloth(std::size_t i, int part, Real h, std::span<ClothLoad> loads, state::Tables& tables,
+                        LoadedCloths& loaded);
 
 }  // namespace hooke::solver

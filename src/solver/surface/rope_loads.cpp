@@ -1,5 +1,7 @@
 #include "solver/surface/rope_loads.h"
 
+#include "solver/surface/row_view.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,46 +10,16 @@ namespace hooke::solver {
 
 namespace {
 
-constexpr std::size_t kVertices = 4;
-
-/// One row of a block.
-struct RowView {
-  const SurfaceRowBlock& block;
-  int lane;
-
-  [[nodiscard]] std::uint32_t vertex(std::size_t k) const { return block.record[k][lane] / 4; }
-  [[nodiscard]] Real weight(std::size_t k) const { return block.weight[k][lane]; }
-  [[nodiscard]] bool is_first_side(std::size_t k) const { return weight(k) > Real(0); }
-  [[nodiscard]] Vec3 normal() const {
-    return {block.normal[0][lane], block.normal[1][lane], block.normal[2][lane]};
-  }
-};
-
-/// Calls `visit(row, number of its block)` with each row of a group.
-template <class Visit>
-void for_rows(const SurfaceGroup& group, Visit visit) {
-  for (std::uint32_t i = 0; i < group.rows.size(); ++i) {
-    for (int lane = 0; lane < group.rows[i].count; ++lane) visit(RowView{group.rows[i], lane}, i);
-  }
-}
-
 class LoadLister {
  public:
   LoadLister(const state::Tables& tables, Real h, SurfaceContacts& contacts)
       : t_(tables), h_(h), c_(contacts) {}
 
   void list(SurfaceGroup& group) {
-    for_vertices(c_, group, [&](std::uint32_t vertex, std::uint32_t mesh) {
-      c_.load_share[vertex] = Real(0);
-      c_.shift[mesh] = vector_cast<Real>(t_.objects[c_.surfaces.meshes[mesh].object].origin - group.origin);
-    });
-    for_rows(group, [&](const RowView& row, std::uint32_t) {
-      if (!has_rope(row) || !closes(row)) return;
-      for (std::size_t k = 0; k < kVertices; ++k)
-        c_.load_share[row.vertex(k)] += row.is_first_side(k) ? row.weight(k) : -row.weight(k);
-    });
+    const auto presses = [&](const RowView& row) { return has_rope(row) && closes(row, t_, h_, c_); };
+    share_out_rows(t_, group, c_, presses);
     for_rows(group, [&](const RowView& row, std::uint32_t block) {
-      if (has_rope(row) && closes(row)) add(row, block);
+      if (presses(row)) add(row, block);
     });
   }
 
@@ -62,40 +34,20 @@ class LoadLister {
     return t_.particles.velocity[c_.surfaces.particle[vertex]];
   }
 
-  /// Gap beyond the distance that the row keeps [m].
-  [[nodiscard]] Real separation_of(const RowView& row) const {
-    Vec3 between;
-    for (std::size_t k = 0; k < kVertices; ++k) {
-      const std::uint32_t vertex = row.vertex(k);
-      const Vec3 x =
-          t_.particles.position[c_.surfaces.particle[vertex]].x + c_.shift[c_.surfaces.mesh_of[vertex]];
-      between += row.weight(k) * x;
-    }
-    return dot(row.normal(), between) - row.block.distance[row.lane];
-  }
-
-  /// Whether the row may act in this substep.
-  [[nodiscard]] bool closes(const RowView& row) const {
-    constexpr Real kMargin = Real(0.05);  // Over the distance that is kept.
-    Vec3 relative;
-    for (std::size_t k = 0; k < kVertices; ++k) relative += row.weight(k) * velocity(row.vertex(k)).v;
-    const Real approach = std::max(-dot(row.normal(), relative) * h_, Real(0));
-    return separation_of(row) < approach + kMargin * row.block.distance[row.lane];
-  }
-
   /// Adds the loads of the points of ropes in a row. A vertex shares its mass among the rows that it is in.
   void add(const RowView& row, std::uint32_t block) {
     for (const bool first : {true, false}) {
       Real inverse = Real(0);
       Vec3 surface;
-      for (std::size_t k = 0; k < kVertices; ++k) {
+      for (std::size_t k = 0; k < RowView::kVertices; ++k) {
         if (row.is_first_side(k) == first) continue;
         const state::VelocityRecord& other = velocity(row.vertex(k));
         const Real w = std::abs(row.weight(k));
         inverse += w * w * other.inverse_mass * std::max(c_.load_share[row.vertex(k)], Real(1));
         surface += w * other.v;
       }
-      for (std::size_t k = 0; k < kVertices; ++k) {
+      const Real separation = std::max(separation_of(row, t_, c_), Real(0));
+      for (std::size_t k = 0; k < RowView::kVertices; ++k) {
         const std::uint32_t vertex = row.vertex(k);
         if (row.is_first_side(k) != first || row.weight(k) == Real(0) || !is_rope(vertex)) continue;
         const std::uint32_t particle = c_.surfaces.particle[vertex];
@@ -107,7 +59,7 @@ class LoadLister {
                             .inverse_mass = inverse,
                             .normal = (first ? Real(1) : Real(-1)) * row.normal(),
                             .surface = surface,
-                            .separation = std::max(separation_of(row), Real(0))});
+                            .separation = separation});
       }
     }
   }
@@ -155,7 +107,7 @@ void apply_rope_loads(SurfaceContacts& contacts, SurfaceGroup& group) {
     block.pushed[load.lane] = both;
     // Lanes without a row repeat the last one in all.
     for (int lane = block.count; lane < kLanes; ++lane) block.pushed[lane] = block.pushed[block.count - 1];
-    for (std::size_t k = 0; k < kVertices; ++k) {
+    for (std::size_t k = 0; k < RowView::kVertices; ++k) {
       const Real missing = both - impulse[row.is_first_side(k) ? 0 : 1];
       state::VelocityRecord& record = contacts.velocity[row.vertex(k)];
       record.v += (row.weight(k) * record.inverse_mass * missing) * row.normal();

@@ -1,5 +1,6 @@
 #include "solver/surface/surface_contacts.h"
 
+#include "solver/surface/solid_loads.h"
 #include "solver/surface/surface_detection.h"
 #include "solver/surface/surface_rows.h"
 #include "solver/surface/surface_truncation.h"
@@ -104,6 +105,11 @@ void begin_surface_step(const state::Tables& tables, int substeps, SurfaceContac
   if (!changed) return;
   contacts.any_rope = std::any_of(contacts.surfaces.meshes.begin(), contacts.surfaces.meshes.end(),
                                   [](const SurfaceMesh& mesh) { return mesh.is_rope(); });
+  const auto has = [&](PointRef::Kind kind) {
+    return std::any_of(contacts.surfaces.meshes.begin(), contacts.surfaces.meshes.end(),
+                       [&](const SurfaceMesh& mesh) { return tables.objects[mesh.object].kind == kind; });
+  };
+  contacts.any_cloth_and_solid = has(PointRef::Kind::kCloth) && has(PointRef::Kind::kSolid);
   const std::size_t count = contacts.surfaces.particle.size();
   const std::size_t meshes = contacts.surfaces.meshes.size();
   contacts.live_groups = 0;
@@ -147,12 +153,12 @@ void find_contacts_before_solutions(parallel::ThreadPool& pool, Real h, SurfaceC
   if (!contacts.active) return;
   // All groups are made at the same time in a step, whether a rope or a stiff solid is somewhere or not.
   if (contacts.regroup || contacts.any_stiff) refresh_surface_groups(tables, h, contacts);
-  if (!contacts.any_stiff && !contacts.any_rope) return;
+  if (!contacts.any_stiff && !contacts.any_rope && !contacts.any_cloth_and_solid) return;
   for_groups_divided(pool, contacts, [&](SurfaceGroup& group, parallel::ThreadPool* workers) {
     const bool any_stiff = std::any_of(group.meshes.begin(), group.meshes.end(), [&](std::uint32_t mesh) {
       return contacts.stiff[contacts.surfaces.meshes[mesh].object] != 0;
     });
-    if (!any_stiff && !group.any_rope) return;
+    if (!any_stiff && !group.any_rope && !may_load_cloths(tables, contacts, group)) return;
     // Planes that are out of date move what rolls or slides over an edge, which strains what is stiff.
     if (needs_contacts(tables, h, contacts, group) ||
         (any_stiff && pairs_would_meet(tables, h, contacts, group)))

@@ -27,8 +27,8 @@ void solve_surfaces(parallel::ThreadPool& pool, Real h, bool again, SurfaceConta
 bool refresh_surface_contacts(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
                               state::Tables& tables);
 
-/// Finds contacts of groups with stiff solids or ropes before these are solved, as refresh_surface_contacts
-/// does.
+/// Finds contacts of groups with stiff solids, ropes or cloths that solids may load, before these are solved,
+/// as refresh_surface_contacts does.
 void find_contacts_before_solutions(parallel::ThreadPool& pool, Real h, SurfaceContacts& contacts,
                                     const state::Tables& tables);
 

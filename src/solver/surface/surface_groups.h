@@ -2,6 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "geometry/box.h"
+#include "solver/cloth/cloth_loads.h"
 #include "solver/surface/solid_pieces.h"
 #include "solver/surface/surface_crossings.h"
 #include "solver/surface/surface_mesh.h"
@@ -68,8 +69,9 @@ struct SurfaceGroup {
   std::vector<Real> speeds;                      ///< Scratch memory.
   SolidPieces pieces;                            ///< Scratch memory: of stiff solids that are corrected.
   SurfaceCounts counts;
-  bool any_rope = false;                       ///< Some of the surfaces is a rope.
-  std::uint32_t first_load = 0, end_load = 0;  ///< Its rows of SurfaceContacts::loads.
+  bool any_rope = false;                                   ///< Some of the surfaces is a rope.
+  std::uint32_t first_load = 0, end_load = 0;              ///< Its rows of SurfaceContacts::loads.
+  std::uint32_t first_solid_load = 0, end_solid_load = 0;  ///< Its rows of SurfaceContacts::solid_loads.
 };
 
 /// All contacts of surfaces. Nothing of it lives from step to step but memory.
@@ -103,11 +105,13 @@ struct SurfaceContacts {
   std::vector<std::uint8_t> stiff;      ///< By object: it is a solid that is solved as a whole.
   bool any_stiff = false;               ///< Some object is.
   bool any_rope = false;                ///< Some surface is a rope.
+  bool any_cloth_and_solid = false;     ///< Some are cloths, and some are solids.
   std::vector<std::uint8_t> refreshed;  ///< By object: contacts were found anew in this substep.
   bool keeps_spent_rows = false;        ///< Whether groups are to keep their `spent_rows`.
   std::vector<RopeLoad> loads;          ///< What presses on ropes in this substep, by group and row.
   std::vector<std::array<std::uint32_t, 2>> load_order;  ///< By point: its row, and that of a load.
-  std::vector<Real> load_share;  ///< By vertex: sum of its weights in rows that press on ropes.
+  std::vector<ClothLoad> solid_loads;  ///< What of solids presses on cloths, by group and row.
+  std::vector<Real> load_share;  ///< By vertex: sum of its weights in rows that press, of those listed last.
   bool regroup = false;          ///< All bounds are to be made anew.
 
   /// Calls `visit` with each group.

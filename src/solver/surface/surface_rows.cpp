@@ -1,6 +1,7 @@
 #include "solver/surface/surface_rows.h"
 
 #include "solver/surface/rope_loads.h"
+#include "solver/surface/solid_loads.h"
 #include "solver/surface/surface_kernels.h"
 #include "solver/surface/surface_tuning.h"
 
@@ -77,6 +78,7 @@ void solve_surface_rows(Real h, bool again, SurfaceContacts& contacts, SurfaceGr
   if (!again) {
     wide::prepare_surface_rows(group.rows, h, contacts.position.data(), contacts.velocity.data());
     apply_rope_loads(contacts, group);
+    apply_solid_loads(contacts, group);
   }
   for (int sweep = 1; sweep <= kSurfaceSweeps; ++sweep)
     wide::solve_surface_rows(group.rows, contacts.velocity.data());
