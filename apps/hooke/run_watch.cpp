@@ -29,6 +29,7 @@ enum Kind : int {
 };
 
 constexpr double kBeyondLimit = 1.1;  ///< Stretch over the declared limit from which on it is reported.
+constexpr int kMostAlike = 8;         ///< Warnings of one kind that are told one by one.
 constexpr double kOpen = 0.01;        ///< Gap of a hook that is reported [m].
 /// Overlap of two bodies, over half of the thinnest side of the smaller one.
 constexpr double kPressed = 0.25;
@@ -584,12 +585,19 @@ std::vector<RunWarning> RunWatch::warnings() const {
   std::stable_sort(sorted.begin(), sorted.end(), [](const Worst& a, const Worst& b) {
     return std::pair(a.order, a.kind) < std::pair(b.order, b.kind);
   });
-  // Copies that have the same trouble give one warning, by the worst of them.
+  const auto are_many = [&](int kind) {
+    return std::count_if(worst_.begin(), worst_.end(), [kind](const Worst& one) {
+             return one.kind == kind && !one.warning.object.empty();
+           }) > kMostAlike;
+  };
+  // Copies that have the same trouble give one warning, by the worst of them, and so do many objects.
   std::vector<Worst> told;
   std::vector<int> copies;
   for (Worst& one : sorted) {
+    const bool is_one_of_many = !one.warning.object.empty() && are_many(one.kind);
     const auto same = std::find_if(told.begin(), told.end(), [&](const Worst& other) {
-      return other.kind == one.kind && are_copies(other.warning.object, one.warning.object);
+      if (other.kind != one.kind || other.warning.object.empty() != one.warning.object.empty()) return false;
+      return is_one_of_many || are_copies(other.warning.object, one.warning.object);
     });
     if (same == told.end()) {
       told.push_back(std::move(one));

@@ -49,7 +49,8 @@ class RunWatch {
   void look(const Simulation& simulation, const StepReport& report);
 
   /// Returns warnings in the order of the objects' creation; those of no object come last. Copies of one
-  /// object ("flag[3]") that have the same trouble give one warning, by the worst of them.
+  /// object ("flag[3]") that have the same trouble give one warning, by the worst of them, and so do more
+  /// than eight objects of any name.
   [[nodiscard]] std::vector<RunWarning> warnings() const;
 
  private:

@@ -474,6 +474,18 @@ class Warnings(Program):
         scene["bodies"][1]["position"] = [0.2, 0, 0]
         self.assertEqual(self.problems(scene), {})
 
+    def test_many_objects_with_the_same_trouble_give_one_warning(self):
+        box = {"kind": "dynamic", "shape": {"box": {"half_extents": [0.1, 0.1, 0.1]}}}
+        for count in (8, 9):
+            scene = {"world": {"gravity": [0, 0, 0]}, "bodies": [], "hooks": []}
+            for i in range(count):
+                scene["bodies"] += [box | {"name": f"a{i}", "position": [0, i, 0]},
+                                    box | {"name": f"b{i}", "position": [0.5 + 0.05 * i, i, 0]}]
+                scene["hooks"].append({"name": f"k{i}", "a": f"a{i}.right", "b": f"b{i}.left"})
+            told = self.problems(scene)
+            self.assertEqual(len(told), 8 if count == 8 else 1)
+            self.assertEqual("(the worst of 9)" in told[f"k{count - 1}"]["what"], count == 9)
+
 
 class Output(Program):
     def test_a_folder_that_refuses_is_exit_code_3_and_leaves_nothing(self):

@@ -122,7 +122,7 @@ constexpr const char* kEverything = R"({
   "cloths": [
     {"name": "cloth", "columns": 4, "rows": 3, "corner": [0, 1, 0], "column_direction": [0, 0, 1],
      "row_direction": [1, 0, 0], "width": 2, "height": 3, "areal_density": 0.3, "thickness": 0.01,
-     "stretch_stiffness": "rigid", "shear_stiffness": 100, "bend_stiffness": 0.5, "damping": 0.1,
+     "stretch_stiffness": "rigid", "shear_stiffness": 150, "bend_stiffness": 0.5, "damping": 0.1,
      "bend_damping": 0.2, "yield_angle": 0.3, "bend": "none", "extension_max": 0.1, "strength": 50, "tear_strain": 0.2, "tethers": true, "self_contact": true,
      "pressure": 500, "drag_coefficient": 1,
      "lift_coefficient": 0, "air_friction": 0.1, "pins": [{"column": "last"}, {"row": 1}, {"topmost": 0}],
