@@ -371,10 +371,10 @@ void RunWatch::look_at_start(const Simulation& simulation, Watched& watched) {
   const Scene& scene = simulation.scene();
   const World& world = simulation.world();
   const SceneObject& object = watched.object;
-  const auto add = [&](int kind, std::optional<RunWarning> warning) {
+  const auto add = [&](int kind, std::optional<RunWarning> warning, double ratio = 0) {
     if (!warning) return;
     warning->object = object.name;
-    note(watched.order, kind, 0, *std::move(warning));
+    note(watched.order, kind, ratio, *std::move(warning));
   };
   switch (object.kind) {
     case SceneObject::Kind::kRope:
@@ -396,7 +396,7 @@ void RunWatch::look_at_start(const Simulation& simulation, Watched& watched) {
     case SceneObject::Kind::kHook: {
       const double gap = in_double(world.hook_gap(object.hook));
       watched.was_closed = gap <= kOpen;
-      if (!watched.was_closed) add(kGapAtStart, gap_at_start(gap));
+      if (!watched.was_closed) add(kGapAtStart, gap_at_start(gap), gap / kOpen);
       break;
     }
     default:
@@ -610,7 +610,8 @@ std::vector<RunWarning> RunWatch::warnings() const {
   std::vector<RunWarning> warnings;
   for (std::size_t i = 0; i < told.size(); ++i) {
     warnings.push_back(std::move(told[i].warning));
-    if (copies[i] > 1) warnings.back().what += text_of(" (the worst of %d)", copies[i]);
+    const char* const one = told[i].ratio > 0 ? "the worst" : "one";
+    if (copies[i] > 1) warnings.back().what += text_of(" (%s of %d)", one, copies[i]);
   }
   return warnings;
 }
