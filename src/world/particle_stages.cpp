@@ -350,9 +350,10 @@ void solve_loaded_cloths(WorldData& world, Real h) {
   solver::SurfaceContacts& surfaces = world.frame.surfaces;
   solver::note_solid_motion(world.tables, surfaces);
   for_ranges(*world.pool, count, 1, [&](Range range, int part) {
-    for (int i = range.begin; i < range.end; ++i)
-      solver::solve_loaded_cloth(static_cast<std::size_t>(i), part, h, surfaces.solid_loads, world.tables,
-                                 loaded);
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto cloth = static_cast<std::size_t>(i);
+      solver::solve_loaded_cloth(cloth, part, h, surfaces.solid_loads, world.tables, loaded);
+    }
   });
   solver::release_cloth_presses(loaded.presses, world.tables);
   solver::release_solid_loads(surfaces.solid_loads, world.tables);

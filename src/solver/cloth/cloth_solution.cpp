@@ -320,21 +320,9 @@ bool ClothSolution::go_down() {
   return false;
 }
 
-/// Takes back what momentum and angular momentum the error has made, where nothing holds the cloth: springs
-/// keep them.
-void ClothSolution::keep_momentum(const Problem& problem, std::uint32_t first_particle) {
-  constexpr double kLeastSpinShare = 1e-9;  // of inertia, for points on a line
-  if (is_held_) return;
-  double mass = 0;
-  DVec3 center, made;
-  for (std::size_t i = 0; i < points_; ++i) {
-    mass += mass_[i];
-    center += mass_[i] * x_[i];
-    made += mass_[i] * (v_[i] - unsprung_[i]);
-  }
-  center = (1 / mass) * center;
-  Symmetric3<double> inertia = {};
-  DVec3 spin_made;
+/// Adds what bodies and solids have got of the cloth: momentum, and angular momentum about `center`.
+void ClothSolution::add_given(const Problem& problem, std::uint32_t first_particle, DVec3 center, DVec3& made,
+                              DVec3& spin_made) const {
   for (const ClothPress& press : problem.presses) {
     made += press.push;
     const DVec3 center_of_body = x_[press.particle - first_particle] - press.lever;
@@ -350,6 +338,24 @@ void ClothSolution::keep_momentum(const Problem& problem, std::uint32_t first_pa
     made -= given;
     spin_made += load.turn - cross(place - load.lever - center, given);
   }
+}
+
+/// Takes back what momentum and angular momentum the error has made, where nothing holds the cloth: springs
+/// keep them.
+void ClothSolution::keep_momentum(const Problem& problem, std::uint32_t first_particle) {
+  constexpr double kLeastSpinShare = 1e-9;  // of inertia, for points on a line
+  if (is_held_) return;
+  double mass = 0;
+  DVec3 center, made;
+  for (std::size_t i = 0; i < points_; ++i) {
+    mass += mass_[i];
+    center += mass_[i] * x_[i];
+    made += mass_[i] * (v_[i] - unsprung_[i]);
+  }
+  center = (1 / mass) * center;
+  Symmetric3<double> inertia = {};
+  DVec3 spin_made;
+  add_given(problem, first_particle, center, made, spin_made);
   for (std::size_t i = 0; i < points_; ++i) {
     const DVec3 r = x_[i] - center;
     spin_made += mass_[i] * cross(r, v_[i] - unsprung_[i]);

@@ -96,6 +96,8 @@ class ClothSolution {
   [[nodiscard]] bool go_down();
   [[nodiscard]] bool renew_touches();
   [[nodiscard]] bool find_minimum();
+  void add_given(const Problem& problem, std::uint32_t first_particle, DVec3 center, DVec3& made,
+                 DVec3& spin_made) const;
   void keep_momentum(const Problem& problem, std::uint32_t first_particle);
 
   double h_ = 0;         ///< Length of the substep [s].

@@ -59,9 +59,10 @@ class SolidLoadLister {
   [[nodiscard]] bool waves_cross(std::uint32_t solid) const {
     double stiffness = 0;  // Modulus times volume.
     const state::Rows rows = t_.objects[solid].tetrahedra;
-    for (std::uint32_t row = rows.first; row < rows.end(); ++row)
-      stiffness += 3 * static_cast<double>(t_.tetrahedra.shear_modulus[row]) *
-                   static_cast<double>(t_.tetrahedra.volume[row]);
+    for (std::uint32_t row = rows.first; row < rows.end(); ++row) {
+      const auto modulus = 3 * static_cast<double>(t_.tetrahedra.shear_modulus[row]);
+      stiffness += modulus * static_cast<double>(t_.tetrahedra.volume[row]);
+    }
     const math::Symmetric3<double> inertia = whole_solid(solid, t_).inertia;
     const auto h = static_cast<double>(h_);
     return h * h * stiffness > 0.5 * (inertia.xx + inertia.yy + inertia.zz);
