@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hooke::solver {
 
@@ -121,26 +122,42 @@ bool is_drawn_out(const state::Tables& tables, const state::Deformable& cloth) {
   return false;
 }
 
-/// Drops what a linear problem says nothing of: what moves too far within the substep, tangled cloths, and
-/// those that bear by their gas, which knows of no bodies. Marks the cloths for which that is too heavy.
+/// Says what a linear problem says nothing of: what moves too far against its cloth within the substep, what
+/// presses on tangled cloths, and on those that bear by their gas, which knows of nothing that presses.
+class WildPresses {
+ public:
+  WildPresses(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h)
+      : bearings_(bearings), t_(tables), h_(static_cast<double>(h)) {}
+
+  /// Whether that holds for what presses on the cloth of bearing `i` with this velocity [m/s].
+  [[nodiscard]] bool has(std::size_t i, DVec3 velocity) {
+    if (i != known_) {
+      known_ = i;
+      const state::Deformable& cloth = t_.objects[bearings_[i].object];
+      velocity_ = mean_velocity(t_, cloth);
+      is_wild_ = cloth.gas > 0 || is_drawn_out(t_, cloth);
+    }
+    return is_wild_ || length(velocity - velocity_) * h_ > kMostPressWay * bearings_[i].link_length;
+  }
+
+ private:
+  std::span<const ClothBearing> bearings_;
+  const state::Tables& t_;
+  double h_;
+  std::size_t known_ = std::numeric_limits<std::size_t>::max();  ///< Bearing of what follows.
+  DVec3 velocity_ = {};                                          ///< Of the cloth [m/s].
+  bool is_wild_ = false;
+};
+
+/// Drops what is wild of bodies, and marks the cloths for which that is too heavy.
 void drop_wild_presses(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
                        LoadedCloths& loaded) {
   loaded.is_left.assign(bearings.size(), 0);
-  std::size_t known = bearings.size();  // Of what follows.
-  DVec3 velocity;
-  bool is_wild = false;
+  WildPresses wild(bearings, tables, h);
   std::erase_if(loaded.presses, [&](const ClothPress& press) {
     const std::size_t i = bearing_with(bearings, tables, press.particle);
     if (i == bearings.size()) return true;
-    if (i != known) {
-      known = i;
-      const state::Deformable& cloth = tables.objects[bearings[i].object];
-      velocity = mean_velocity(tables, cloth);
-      is_wild = cloth.gas > 0 || is_drawn_out(tables, cloth);
-    }
-    const DVec3 speed = vector_cast<double>(tables.bodies.motion[press.body].v) - velocity;
-    const bool is_fast = length(speed) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
-    if (!is_wild && !is_fast) return false;
+    if (!wild.has(i, vector_cast<double>(tables.bodies.motion[press.body].v))) return false;
     const Real inverse_mass = tables.bodies.motion[press.body].inverse_mass;
     if (press.presses && press.gives_way && inverse_mass * bearings[i].most_mass < Real(1))
       loaded.is_left[i] = 1;
@@ -203,23 +220,13 @@ void mark_pressed(std::span<const ClothBearing> bearings, const state::Tables& t
   }
 }
 
-/// Leaves to contacts what drop_wild_presses would of solids.
+/// Leaves to contacts what is wild of solids.
 void leave_wild_loads(std::span<const ClothBearing> bearings, const state::Tables& tables, Real h,
                       std::span<ClothLoad> loads) {
-  std::size_t known = bearings.size();  // Of what follows.
-  DVec3 velocity;
-  bool is_wild = false;
+  WildPresses wild(bearings, tables, h);
   for (ClothLoad& load : loads) {
     const std::size_t i = bearing_with(bearings, tables, load.particle[0]);
-    if (i != known && i < bearings.size()) {
-      const state::Deformable& cloth = tables.objects[bearings[i].object];
-      velocity = mean_velocity(tables, cloth);
-      is_wild = cloth.gas > 0 || is_drawn_out(tables, cloth);
-    }
-    known = i;
-    load.is_left =
-        i == bearings.size() || is_wild ||
-        length(load.surface - velocity) * static_cast<double>(h) > kMostPressWay * bearings[i].link_length;
+    load.is_left = i == bearings.size() || wild.has(i, load.surface);
   }
 }
 
