@@ -23,6 +23,9 @@ struct LineInstance {
 
 constexpr int kGroundSides = 32;
 
+/// Width and height of a picture in those of the smaller picture of its sky.
+constexpr int kSkyPart = 4;
+
 /// How far things darken each other, in distances of the eye from its target.
 constexpr float kOcclusionRadius = 0.09F;
 
@@ -86,8 +89,8 @@ GroundMesh make_ground_mesh() {
 }
 
 /// Brings the images of a batch to the graphics card: that of its color, and those of its relief and finish.
-Result<std::pair<GLuint, DetailTextures>> prepare_images(RendererData& data, const Batch& batch,
-                                                         const std::string& where) {
+Result<std::pair<GLuint, DetailTextures>> prepare_images(RendererData& data, LitPrograms& programs,
+                                                         const Batch& batch, const std::string& where) {
   std::pair<GLuint, DetailTextures> found;
   const bool has_details = batch.normals || batch.finish;
   if (batch.texture || has_details) {
@@ -96,7 +99,7 @@ Result<std::pair<GLuint, DetailTextures>> prepare_images(RendererData& data, con
     found.first = color.value();
   }
   if (!has_details) return found;
-  const auto made = make_detailed_programs(data.programs, data.options.fast);
+  const auto made = make_detailed_programs(programs);
   if (!made) return made.error();
   const auto normals = data.cache.update(batch.normals ? batch.normals : data.flat, false, where);
   if (!normals) return normals.error();
@@ -106,11 +109,25 @@ Result<std::pair<GLuint, DetailTextures>> prepare_images(RendererData& data, con
   return found;
 }
 
+/// Returns the shaders of lit surfaces, which are made when first used.
+Result<LitPrograms*> lit_programs(RendererData& data, bool has_lights) {
+  std::optional<LitPrograms>& lit = data.lit[has_lights ? 1 : 0];
+  if (!lit) {
+    auto made = make_lit_programs({data.options.fast, has_lights});
+    if (!made) return made.error();
+    lit = std::move(made).value();
+  }
+  return &*lit;
+}
+
 /// Brings everything to the graphics card, or returns what is wrong with it.
 Result<Prepared> prepare(RendererData& data, const DrawList& list) {
   auto batches = make_batches(list, data.picture.height, data.shared);
   if (!batches) return batches.error();
+  const auto programs = lit_programs(data, !list.lights.empty());
+  if (!programs) return programs.error();
   Prepared prepared;
+  prepared.programs = programs.value();
   prepared.batches = std::move(batches).value();
   for (const Batch& batch : prepared.batches.batches) {
     const std::string where =
@@ -118,7 +135,7 @@ Result<Prepared> prepare(RendererData& data, const DrawList& list) {
     const auto mesh = data.cache.update(batch.geometry, where);
     if (!mesh) return mesh.error();
     prepared.meshes.push_back(mesh.value());
-    const auto images = prepare_images(data, batch, where);
+    const auto images = prepare_images(data, *programs.value(), batch, where);
     if (!images) return images.error();
     prepared.textures.push_back(images.value().first);
     prepared.details.push_back(images.value().second);
@@ -143,7 +160,8 @@ MeshLook look_of(const Batch& batch) {
 }
 
 /// Ropes and hairs have no texture.
-const MeshProgram& program_of(const Programs& programs, const Batch& batch, GLuint texture, GLuint normals) {
+const MeshProgram& program_of(const LitPrograms& programs, const Batch& batch, GLuint texture,
+                              GLuint normals) {
   const auto& of_look = programs.meshes[static_cast<std::size_t>(look_of(batch))];
   const auto wanted = normals != 0 ? MeshImages::kAll : texture != 0 ? MeshImages::kColor : MeshImages::kNone;
   const MeshProgram& program = of_look[static_cast<std::size_t>(wanted)];
@@ -155,7 +173,7 @@ void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_th
     const Batch& batch = prepared.batches.batches[i];
     if ((batch.alpha == AlphaMode::kBlend) != see_through) continue;
     const DetailTextures& details = prepared.details[i];
-    const MeshProgram& program = program_of(data.programs, batch, prepared.textures[i], details.normals);
+    const MeshProgram& program = program_of(*prepared.programs, batch, prepared.textures[i], details.normals);
     glUseProgram(program.program.name());
     if (program.alpha_mode >= 0) glUniform1i(program.alpha_mode, static_cast<GLint>(batch.alpha));
     bind_texture(kSurfaceUnit, prepared.textures[i]);
@@ -180,10 +198,10 @@ void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_th
   }
 }
 
-void draw_ground(const RendererData& data, const Ground& ground, const std::array<float, 4>& plane) {
+void draw_ground(const RendererData& data, const GroundProgram& p, const Ground& ground,
+                 const std::array<float, 4>& plane) {
   const auto color = linear_of(ground.color);
   const auto line = linear_of(ground.line_color);
-  const GroundProgram& p = data.programs.ground;
   glUseProgram(p.program.name());
   glUniform4fv(p.plane, 1, plane.data());
   glUniform4f(p.color, color[0], color[1], color[2], 1);
@@ -195,12 +213,27 @@ void draw_ground(const RendererData& data, const Ground& ground, const std::arra
   glDrawArrays(GL_TRIANGLES, 0, data.ground.vertex_count);
 }
 
+/// Fills what nothing else covers with the sky, or with the smaller picture of it.
 void draw_sky(const RendererData& data) {
-  glUseProgram(data.programs.sky.name());
+  glUseProgram(data.sky ? data.programs.present.name() : data.programs.sky.name());
+  if (data.sky) bind_texture(kSurfaceUnit, data.sky->texture.name());
   glDepthMask(GL_FALSE);
   glDisable(GL_CULL_FACE);
   glBindVertexArray(data.empty_array.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/// Draws the smaller picture of the sky, which is smooth enough for that.
+void draw_small_sky(const RendererData& data) {
+  glBindFramebuffer(GL_FRAMEBUFFER, data.sky->framebuffer.name());
+  glViewport(0, 0, data.sky->width, data.sky->height);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  bind_texture(kNoiseUnit, data.noise.name());
+  glUseProgram(data.programs.sky.name());
+  glBindVertexArray(data.empty_array.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
 }
 
 /// Draws the lines that lie on top of everything, or all others.
@@ -255,7 +288,7 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
   bind_light(data);
   glCullFace(GL_BACK);
   draw_meshes(data, prepared, false);
-  if (plane != nullptr) draw_ground(data, *list.ground, *plane);
+  if (plane != nullptr) draw_ground(data, prepared.programs->ground, *list.ground, *plane);
   draw_sky(data);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -291,6 +324,29 @@ Result<void> prepare_lights(RendererData& data, const Prepared& prepared, const 
   }
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, data.frame_buffer.name());
   draw_light_maps(data, prepared, plan, frame);
+  return {};
+}
+
+/// Makes what is drawn into for a picture of that size. After an Error the old ones stay.
+Result<void> make_targets(RendererData& data, int width, int height) {
+  const RendererOptions& options = data.options;
+  auto picture = make_picture_target(width, height, options.samples);
+  if (!picture) return picture.error();
+  std::optional<OcclusionTarget> occlusion;
+  if (options.occlusion) {
+    auto made = make_occlusion_target(width, height, options.fast ? 4 : 2);
+    if (!made) return made.error();
+    occlusion = std::move(made).value();
+  }
+  std::optional<PictureTarget> sky;
+  if (options.fast) {
+    auto made = make_picture_target(std::max(width / kSkyPart, 1), std::max(height / kSkyPart, 1), 1);
+    if (!made) return made.error();
+    sky = std::move(made).value();
+  }
+  data.picture = std::move(picture).value();
+  data.occlusion = std::move(occlusion);
+  data.sky = std::move(sky);
   return {};
 }
 
@@ -347,18 +403,14 @@ Result<Renderer> Renderer::create(const Context& context, const RendererOptions&
   auto programs = make_programs(options.fast);
   if (!programs) return programs.error();
   data->programs = std::move(programs).value();
-  auto picture = make_picture_target(options.width, options.height, options.samples);
-  if (!picture) return picture.error();
-  data->picture = std::move(picture).value();
+  const auto lit = lit_programs(*data, false);
+  if (!lit) return lit.error();
+  const auto targets = make_targets(*data, options.width, options.height);
+  if (!targets) return targets.error();
   if (options.shadow_map_size != 0) {
     auto shadow_map = make_shadow_target(options.shadow_map_size);
     if (!shadow_map) return shadow_map.error();
     data->shadow_map = std::move(shadow_map).value();
-  }
-  if (options.occlusion) {
-    auto occlusion = make_occlusion_target(options.width, options.height, options.fast ? 4 : 2);
-    if (!occlusion) return occlusion.error();
-    data->occlusion = std::move(occlusion).value();
   }
   data->raw_depths = make_sampler();
   glSamplerParameteri(data->raw_depths.name(), GL_TEXTURE_COMPARE_MODE, GL_NONE);
@@ -381,15 +433,7 @@ Result<void> Renderer::resize(int width, int height) {
   if (width == data_->picture.width && height == data_->picture.height) return {};
   auto current = data_->context.make_current();
   if (!current) return current;
-  auto picture = make_picture_target(width, height, data_->options.samples);
-  if (!picture) return picture.error();
-  if (data_->options.occlusion) {
-    auto occlusion = make_occlusion_target(width, height, data_->options.fast ? 4 : 2);
-    if (!occlusion) return occlusion.error();
-    data_->occlusion = std::move(occlusion).value();
-  }
-  data_->picture = std::move(picture).value();
-  return {};
+  return make_targets(*data_, width, height);
 }
 
 Result<void> Renderer::draw(const DrawList& list) {
@@ -429,6 +473,7 @@ Result<void> Renderer::draw(const DrawList& list) {
     draw_occlusion(data, prepared.value(), ground,
                    0.5F * static_cast<float>(data.occlusion->height) / half_height);
   }
+  if (data.sky) draw_small_sky(data);
   draw_picture(data, list, prepared.value(), ground);
   return take_gl_error("draw");
 }

@@ -7,6 +7,7 @@
 #include "render/renderer.h"
 #include "render/targets.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -49,6 +50,7 @@ struct Prepared {
   std::vector<const GpuMesh*> meshes;   ///< One for each batch.
   std::vector<GLuint> textures;         ///< 0 means none.
   std::vector<DetailTextures> details;  ///< The same.
+  const LitPrograms* programs = nullptr;
 };
 
 struct RendererData {
@@ -62,11 +64,13 @@ struct RendererData {
   Context context;
   RendererOptions options;
   Programs programs;
+  std::array<std::optional<LitPrograms>, 2> lit;  ///< Without lights besides the sun, and with them.
   PictureTarget picture;
   std::optional<ShadowTarget> shadow_map;
   std::optional<ShadowTarget> light_maps;  ///< Made when lights besides the sun first cast shadows.
   int light_rows = 0;                      ///< Rows of its tiles.
   std::optional<OcclusionTarget> occlusion;
+  std::optional<PictureTarget> sky;  ///< A smaller picture of the sky, for drivers without a graphics card.
   GlName raw_depths;  ///< The sampler that reads depths of the shadow map without comparing them.
   std::shared_ptr<const Image> flat = make_pixel(128, 128, 255);   ///< In place of normals.
   std::shared_ptr<const Image> plain = make_pixel(255, 255, 255);  ///< In place of a finish or a color.

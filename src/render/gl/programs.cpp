@@ -31,20 +31,20 @@ Result<void> build(GlName& program, const std::string& title, const ShaderSource
   return {};
 }
 
-Result<void> build_mesh(Programs& p, std::size_t look, MeshImages images, bool fast) {
-  const auto kind = static_cast<MeshLook>(look);
+Result<void> build_mesh(LitPrograms& p, std::size_t look, MeshImages images) {
+  const auto its_look = static_cast<MeshLook>(look);
   // Ropes and hairs have no texture.
-  if (images != MeshImages::kNone && (kind == MeshLook::kRope || kind == MeshLook::kHair)) return {};
+  if (images != MeshImages::kNone && (its_look == MeshLook::kRope || its_look == MeshLook::kHair)) return {};
   MeshProgram& mesh = p.meshes[look][static_cast<std::size_t>(images)];
-  auto built = build(mesh.program, "mesh", mesh_shader(kind, images, fast));
+  auto built = build(mesh.program, "mesh", mesh_shader(its_look, images, p.kind));
   if (built) mesh.alpha_mode = glGetUniformLocation(mesh.program.name(), "alpha_mode");
   return built;
 }
 
-Result<void> build_meshes(Programs& p, bool fast) {
+Result<void> build_meshes(LitPrograms& p) {
   for (std::size_t look = 0; look < kMeshLooks; ++look) {
     for (const MeshImages images : {MeshImages::kNone, MeshImages::kColor}) {
-      auto built = build_mesh(p, look, images, fast);
+      auto built = build_mesh(p, look, images);
       if (!built) return built;
     }
   }
@@ -69,24 +69,33 @@ void find_ground(GroundProgram& ground) {
 
 }  // namespace
 
-Result<void> make_detailed_programs(Programs& programs, bool fast) {
+Result<void> make_detailed_programs(LitPrograms& programs) {
   const auto solid = static_cast<std::size_t>(MeshLook::kSolid);
   if (programs.meshes[solid][static_cast<std::size_t>(MeshImages::kAll)].program.name() != 0) return {};
   for (std::size_t look = 0; look < kMeshLooks; ++look) {
-    auto built = build_mesh(programs, look, MeshImages::kAll, fast);
+    auto built = build_mesh(programs, look, MeshImages::kAll);
     if (!built) return built;
   }
   return {};
 }
 
+Result<LitPrograms> make_lit_programs(LitKind kind) {
+  LitPrograms p;
+  p.kind = kind;
+  const auto meshes = build_meshes(p);
+  if (!meshes) return meshes.error();
+  const auto ground = build(p.ground.program, "ground", ground_shader(kind));
+  if (!ground) return ground.error();
+  find_ground(p.ground);
+  return p;
+}
+
 Result<Programs> make_programs(bool fast) {
   Programs p;
-  const auto all = {build_meshes(p, fast),
-                    build(p.shadow, "shadow", depth_shader(DepthFrom::kSun, false)),
+  const auto all = {build(p.shadow, "shadow", depth_shader(DepthFrom::kSun, false)),
                     build_holed(p.holed_shadow, "holed_shadow", depth_shader(DepthFrom::kSun, true)),
                     build(p.depth, "depth", depth_shader(DepthFrom::kEye, false)),
                     build_holed(p.holed_depth, "holed_depth", depth_shader(DepthFrom::kEye, true)),
-                    build(p.ground.program, "ground", ground_shader(fast)),
                     build(p.ground_depth, "ground_depth", ground_depth_shader()),
                     build(p.sky, "sky", sky_shader(fast)),
                     build(p.occlusion, "occlusion", occlusion_shader()),
@@ -97,7 +106,6 @@ Result<Programs> make_programs(bool fast) {
   for (const auto& built : all) {
     if (!built) return built.error();
   }
-  find_ground(p.ground);
   p.ground_depth_plane = glGetUniformLocation(p.ground_depth.name(), "plane");
   p.occlusion_half_pixel = glGetUniformLocation(p.occlusion.name(), "half_pixel");
   p.occlusion_blur_step = glGetUniformLocation(p.occlusion_blur.name(), "step_over");

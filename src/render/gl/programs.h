@@ -41,15 +41,20 @@ struct GroundProgram {
   GLint grid_origin = -1;
 };
 
-/// These are all compiled shaders.
-struct Programs {
+/// The shaders of lit surfaces.
+struct LitPrograms {
+  LitKind kind;
   /// By look; without a texture, with one, and with relief and finish, which are made when first used.
   std::array<std::array<MeshProgram, 3>, kMeshLooks> meshes;
+  GroundProgram ground;
+};
+
+/// These are all other compiled shaders.
+struct Programs {
   GlName shadow;
   HoledProgram holed_shadow;
   GlName depth;
   HoledProgram holed_depth;
-  GroundProgram ground;
   GlName ground_depth;
   GLint ground_depth_plane = -1;
   GlName sky;
@@ -62,11 +67,11 @@ struct Programs {
   GlName present;
 };
 
-/// Compiles all shaders, or returns the first error of the driver's compiler. Fast ones leave out soft
-/// shadows and fine grain.
+/// Compiles shaders, or returns the first error of the driver's compiler.
 Result<Programs> make_programs(bool fast);
+Result<LitPrograms> make_lit_programs(LitKind kind);
 
 /// Compiles the shaders of meshes with relief and finish, if they are not there.
-Result<void> make_detailed_programs(Programs& programs, bool fast);
+Result<void> make_detailed_programs(LitPrograms& programs);
 
 }  // namespace hooke::render

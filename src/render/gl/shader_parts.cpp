@@ -6,6 +6,10 @@ std::string shader_version(bool fast) {
   return fast ? "#version 330 core\n#define FAST\n" : "#version 330 core\n";
 }
 
+std::string lit_version(LitKind kind) {
+  return shader_version(kind.fast) + "#define LIGHTS " + (kind.has_lights ? "int(light_count.x)\n" : "0\n");
+}
+
 std::string frame_part() {
   return R"(
 layout(std140) uniform Frame {
@@ -296,7 +300,7 @@ Light light_at(vec3 f0, float roughness, vec3 n, vec3 v, vec3 point) {
   light.inner = sky_irradiance(n) * seen + sun;
   vec3 mirrored = mirrored_sky(reflect(-v, n), roughness) * mirrored_share(f0, roughness, n_dot_v);
   light.outer = mirrored * seen + sun * highlight_of(sun_direction.xyz, f0, roughness, n, v, facing, n_dot_v);
-  int sources = int(light_count.x);
+  int sources = LIGHTS;
   for (int i = 0; i < sources; ++i) {
     Source source = source_at(i, point);
     float toward = clamp(dot(n, source.toward), 0.0, 1.0);

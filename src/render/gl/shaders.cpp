@@ -172,7 +172,7 @@ void main() {
   rim *= rim * rim;
   vec3 fibers = mix(vec3(1.0), albedo.rgb, 0.6);
   color += finish.z * rim * fibers * (0.7 * sky_irradiance(n) * seen + 0.5 * sun);
-  int sources = int(light_count.x);
+  int sources = LIGHTS;
   for (int i = 0; i < sources; ++i) {
     Source source = source_at(i, point);
     float toward = dot(n, source.toward);
@@ -244,7 +244,7 @@ void main() {
   float seen = sky_visibility();
   vec3 color = albedo * (0.75 * sky_irradiance(n) * seen + sun * sine * wrapped);
   color += sun * wrapped * (0.16 * white + 0.9 * albedo * own);
-  int sources = int(light_count.x);
+  int sources = LIGHTS;
   for (int i = 0; i < sources; ++i) {
     Source source = source_at(i, point);
     vec3 between = normalize(source.toward + v);
@@ -282,8 +282,8 @@ void main() {
 
 }  // namespace
 
-ShaderSource mesh_shader(MeshLook look, MeshImages images, bool fast) {
-  std::string fragment = shader_version(fast) + frame_part() + color_part() + sky_part() + shadow_part() +
+ShaderSource mesh_shader(MeshLook look, MeshImages images, LitKind kind) {
+  std::string fragment = lit_version(kind) + frame_part() + color_part() + sky_part() + shadow_part() +
                          reflection_part() + kMeshFragmentInputs + albedo_part(images != MeshImages::kNone) +
                          detail_part(images == MeshImages::kAll);
   switch (look) {

@@ -23,16 +23,23 @@ enum class DepthFrom { kSun, kEye };
 /// Which images a mesh has: none, of its color, or of color, normals and finish.
 enum class MeshImages { kNone, kColor, kAll };
 
-ShaderSource mesh_shader(MeshLook look, MeshImages images, bool fast);  ///< Lit triangles, instanced.
+/// What the shaders of lit surfaces do. Software drivers pay for a loop over lights even if it runs zero
+/// times.
+struct LitKind {
+  bool fast = false;        ///< Whether they leave out soft shadows and fine grain.
+  bool has_lights = false;  ///< Whether there are lights besides the sun.
+};
+
+ShaderSource mesh_shader(MeshLook look, MeshImages images, LitKind kind);  ///< Lit triangles, instanced.
 /// Depth only, instanced; with holes where light goes through.
 ShaderSource depth_shader(DepthFrom from, bool holed);
-ShaderSource ground_shader(bool fast);  ///< The plane with its grid.
-ShaderSource ground_depth_shader();     ///< Depth of the plane from the eye.
-ShaderSource sky_shader(bool fast);     ///< The sky behind everything.
-ShaderSource occlusion_shader();        ///< How much of the sky each pixel sees.
-ShaderSource occlusion_blur_shader();   ///< Evens that out.
-ShaderSource line_shader();             ///< Lines of a width in pixels, instanced.
-ShaderSource text_shader();             ///< Triangles in pixels.
-ShaderSource present_shader();          ///< Shows the finished picture in a window.
+ShaderSource ground_shader(LitKind kind);  ///< The plane with its grid.
+ShaderSource ground_depth_shader();        ///< Depth of the plane from the eye.
+ShaderSource sky_shader(bool fast);        ///< The sky behind everything.
+ShaderSource occlusion_shader();           ///< How much of the sky each pixel sees.
+ShaderSource occlusion_blur_shader();      ///< Evens that out.
+ShaderSource line_shader();                ///< Lines of a width in pixels, instanced.
+ShaderSource text_shader();                ///< Triangles in pixels.
+ShaderSource present_shader();             ///< Fills what nothing else covers with a picture.
 
 }  // namespace hooke::render

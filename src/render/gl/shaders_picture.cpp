@@ -59,7 +59,7 @@ void main() {
   float facing = clamp(sun_direction.y, 0.0, 1.0);
   vec3 sun = sun_color.rgb * facing * sun_visibility(point, n, sun_direction.y) * (0.6 + 0.4 * seen);
   vec3 color = albedo * (sky_irradiance(n) * seen + sun);
-  int sources = int(light_count.x);
+  int sources = LIGHTS;
   for (int i = 0; i < sources; ++i) {
     Source source = source_at(i, point);
     float toward = clamp(source.toward.y, 0.0, 1.0);
@@ -169,15 +169,15 @@ out vec2 place;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   place = 0.5 + 0.5 * corner;
-  gl_Position = vec4(corner, 0.0, 1.0);
+  gl_Position = vec4(corner, 1.0, 1.0);  // behind everything
 }
 )";
 
 }  // namespace
 
-ShaderSource ground_shader(bool fast) {
-  return {shader_version() + frame_part() + kGroundVertex, shader_version(fast) + frame_part() +
-                                                               color_part() + sky_part() + shadow_part() +
+ShaderSource ground_shader(LitKind kind) {
+  return {shader_version() + frame_part() + kGroundVertex, lit_version(kind) + frame_part() + color_part() +
+                                                               sky_part() + shadow_part() +
                                                                reflection_part() + kGroundFragment};
 }
 
