@@ -16,6 +16,7 @@ import unittest
 PROGRAM = None
 SWITCHES = int(os.environ.get("HOOKE_SWITCHES", 20))  # Of scenes, to see whether memory stays behind.
 LIMIT = 120  # Seconds after which a state is taken not to come.
+SILENCE = 0.4  # [s], after which a window is taken to draw no more pictures by itself
 SCENE = """{
   "version": 1, "seconds": 600,
   "camera": {"eye": [1.5, 1.6, 7], "target": [1.5, 1.2, 0]},
@@ -67,17 +68,24 @@ class Window:
                 self.read += len(line)
                 yield json.loads(line)
 
-    def wait(self, what, condition):
-        """Waits for a picture that fulfills a condition, and returns what was logged with it."""
+    def wait(self, what, condition, nudges=False):
+        """Waits for a picture that fulfills a condition, and returns what was logged with it. A window in which
+        nothing changes draws none: `nudges` moves the mouse to and fro for another."""
         end = time.monotonic() + LIMIT
+        silent_until = time.monotonic() + SILENCE
         while time.monotonic() < end:
             for state in self.lines():
+                silent_until = time.monotonic() + SILENCE
                 self.last = state
                 self.gl_errors.add(state["gl_error"])
                 if condition(state):
                     return state
             if self.program.poll() is not None:
                 raise AssertionError(f"{what}: the program ended: {self.program.stderr.read()}")
+            if nudges and time.monotonic() > silent_until:
+                self.do("mousemove_relative", "--", 1, 0)
+                self.do("mousemove_relative", "--", -1, 0)
+                silent_until = time.monotonic() + SILENCE
             time.sleep(0.01)
         raise AssertionError(f"{what} did not come; the last state was {self.last}")
 
@@ -87,7 +95,8 @@ class Window:
         for state in self.lines():
             self.last = state
             number = state["picture"] + 2
-        return self.wait("a picture", lambda s: s["picture"] >= number and s["commands"] >= s["posted"])
+        return self.wait("a picture", lambda s: s["picture"] >= number and s["commands"] >= s["posted"],
+                         nudges=True)
 
     def do(self, *words):
         subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=LIMIT)

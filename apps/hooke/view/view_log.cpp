@@ -80,6 +80,7 @@ void ViewLog::write(const SessionView& view, const Eye& eye, const PictureFacts&
                {"plot", facts.plot},
                {"rows", view.history ? view.history->size() : 0},
                {"boxes", facts.boxes},
+               {"scale", facts.scale},
                {"font", facts.font_px},
                {"help", facts.help},
                {"gl_error", facts.gl_error},

@@ -17,6 +17,7 @@ struct PictureFacts {
   std::uint64_t picture = 0;   ///< Number of the picture.
   std::uint64_t posted = 0;    ///< Number of the last command that was given.
   WidgetBoxes boxes = {};      ///< Parts of the panels.
+  double scale = 1;            ///< Width and height of the picture in those of the window.
   float font_px = 0;           ///< Height of the font.
   std::string plot = {};       ///< What is plotted.
   bool help = false;           ///< Whether the page of keys is shown.

@@ -105,13 +105,21 @@ void build_help() {
   ImGui::End();
 }
 
+void build_cost(const PictureCost& pictures) {
+  const double rate = pictures.milliseconds > 0 ? 1000 / pictures.milliseconds : 0.0;
+  if (pictures.scale < 1)
+    ImGui::Text("pictures %10.1f /s, drawn at %.0f %%", rate, 100 * pictures.scale);
+  else
+    ImGui::Text("pictures %10.1f /s", rate);
+}
+
 double in_mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / (1 << 20);
 }
 
 }  // namespace
 
-void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double picture_ms) {
+void ViewPanel::build_figures(const SessionView& view, ViewInput& input, const PictureCost& pictures) {
   ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize({kPanelWidth * ImGui::GetFontSize(), 0}, ImGuiCond_FirstUseEver);
   // What does not fit above the timeline is rolled: in a small window half of it would lie outside.
@@ -129,7 +137,7 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, double 
   build_forms(view, input, boxes_);
   ImGui::Text("time     %10.3f s, speed %g", view.time, view.speed);
   ImGui::Text("step     %10.3f ms", view.step_ms);
-  ImGui::Text("pictures %10.1f /s", picture_ms > 0 ? 1000 / picture_ms : 0.0);
+  build_cost(pictures);
   plot_.build(view, input, boxes_);
   build_insight(view, input, boxes_);
   if (!view.held.empty()) ImGui::Text("holding '%s'", view.held.c_str());
@@ -168,9 +176,9 @@ void ViewPanel::build_timeline(const SessionView& view, ViewInput& input) {
   ImGui::End();
 }
 
-void ViewPanel::build(const SessionView& view, ViewInput& input, double picture_ms) {
+void ViewPanel::build(const SessionView& view, ViewInput& input, const PictureCost& pictures) {
   boxes_.clear();
-  build_figures(view, input, picture_ms);
+  build_figures(view, input, pictures);
   if (input.shows_inspector()) inspector_.build(view, input, boxes_);
   if (view.stage == SessionView::Stage::kReady) build_timeline(view, input);
   if (input.shows_help()) build_help();

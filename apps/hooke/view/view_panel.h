@@ -12,12 +12,18 @@
 
 namespace hooke::app {
 
+/// What the pictures of the window cost.
+struct PictureCost {
+  double milliseconds = 0;  ///< Of a picture; 0 before the first.
+  double scale = 1;         ///< Width and height of a picture in those of the window.
+};
+
 /// The panels of the window: buttons and figures, the timeline, the page of keys. Their buttons give
 /// commands.
 class ViewPanel {
  public:
-  /// Builds all panels for this picture. `picture_ms` is the time that a picture takes.
-  void build(const SessionView& view, ViewInput& input, double picture_ms);
+  /// Builds all panels for this picture. `pictures` tells what pictures cost.
+  void build(const SessionView& view, ViewInput& input, const PictureCost& pictures);
 
   /// Name of what is plotted.
   [[nodiscard]] const std::string& plotted() const { return plot_.chosen(); }
@@ -25,7 +31,7 @@ class ViewPanel {
   [[nodiscard]] const WidgetBoxes& boxes() const { return boxes_; }
 
  private:
-  void build_figures(const SessionView& view, ViewInput& input, double picture_ms);
+  void build_figures(const SessionView& view, ViewInput& input, const PictureCost& pictures);
   void build_timeline(const SessionView& view, ViewInput& input);
 
   std::optional<std::uint64_t> wanted_step_;  ///< While the slider is dragged.

@@ -3,6 +3,7 @@
 #include "hooke/drawing/insight_drawing.h"
 #include "hooke/drawing/scene_drawing.h"
 #include "hooke/view/eye.h"
+#include "hooke/view/picture_pace.h"
 #include "hooke/view/view_input.h"
 #include "hooke/view/view_log.h"
 #include "hooke/view/view_panel.h"
@@ -35,6 +36,8 @@ using Key = ViewInput::Key;
 double milliseconds_since(WallClock::time_point start) {
   return std::chrono::duration<double, std::milli>(WallClock::now() - start).count();
 }
+
+constexpr double kWaitSeconds = 0.02;  ///< Between two looks at a session in which nothing changes.
 
 constexpr float kLetterHeight = 13;  ///< Of the library's own letters [screen units].
 
@@ -85,6 +88,7 @@ struct Window {
         style(options.style),
         drawing(options.style),
         interface_scale(options.interface_scale),
+        pace(options.picture_scale),
         input(its_session, camera) {}
 
   Session& session;
@@ -92,6 +96,7 @@ struct Window {
   DrawingStyle style;
   SceneDrawing drawing;
   std::optional<double> interface_scale;  ///< Size of the panels; what fits the window by default.
+  PicturePace pace;
   render::OrbitCamera camera;
   bool has_camera = false;
   ViewInput input;
@@ -99,13 +104,17 @@ struct Window {
   ViewLog log;
   PictureFacts facts;
   render::DrawList list;
-  double picture_ms = 0;
+  PictureCost cost;
   float drawn_scale = 0;           ///< Size of the panels for which letters were drawn.
   std::size_t warned = 0;          ///< Number of warnings that were printed.
   std::vector<Key> keys;           ///< Keys pressed since the last picture.
   std::deque<KeyPress> presses;    ///< The same for the interface, in the order of time.
   std::vector<int> shown_presses;  ///< Keys that the interface has seen as down in the last picture.
 };
+
+Window& window_of(GLFWwindow* window) {
+  return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
 
 std::optional<Key> control_key(int key) {
   switch (key) {
@@ -181,7 +190,8 @@ std::optional<Key> key_of(int key, int modifiers) {
 /// Stores every key press for the next picture. The interface's own key states lose a key that is pressed and
 /// released between two pictures, which at three pictures a second is most of them.
 void keep_key(GLFWwindow* window, int code, int /*scancode*/, int action, int modifiers) {
-  Window& its = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+  Window& its = window_of(window);
+  its.pace.wake(WallClock::now());
   if (action == GLFW_PRESS && code >= 0) its.presses.push_back({code, modifiers});
   const std::optional<Key> key = key_of(code, modifiers);
   const bool repeats = key == Key::kStep || key == Key::kStepBack;
@@ -191,10 +201,27 @@ void keep_key(GLFWwindow* window, int code, int /*scancode*/, int action, int mo
 
 /// The same for signs, which lie on other keys on other keyboards.
 void keep_sign(GLFWwindow* window, unsigned int sign) {
-  std::vector<Key>& keys = static_cast<Window*>(glfwGetWindowUserPointer(window))->keys;
+  Window& its = window_of(window);
+  its.pace.wake(WallClock::now());
+  std::vector<Key>& keys = its.keys;
   if (sign == '?') keys.push_back(Key::kHelp);
   if (sign == '-') keys.push_back(Key::kSlower);
   if (sign == '+' || sign == '=') keys.push_back(Key::kFaster);
+}
+
+/// Has the window drawn anew after everything that one does to it.
+void wake_by_events(GLFWwindow* window) {
+  glfwSetCursorPosCallback(
+      window, [](GLFWwindow* its, double, double) { window_of(its).pace.wake(WallClock::now()); });
+  glfwSetMouseButtonCallback(
+      window, [](GLFWwindow* its, int, int, int) { window_of(its).pace.wake(WallClock::now()); });
+  glfwSetScrollCallback(window,
+                        [](GLFWwindow* its, double, double) { window_of(its).pace.wake(WallClock::now()); });
+  glfwSetWindowFocusCallback(window,
+                             [](GLFWwindow* its, int) { window_of(its).pace.wake(WallClock::now()); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* its) { window_of(its).pace.wake(WallClock::now()); });
+  glfwSetFramebufferSizeCallback(
+      window, [](GLFWwindow* its, int, int) { window_of(its).pace.wake(WallClock::now()); });
 }
 
 /// Size of the panels: what was asked for, else what keeps them readable on a large or dense display.
@@ -358,12 +385,24 @@ void write_insight(const Window& window) {
 void write_log(Window& window, const render::Context& context) {
   ++window.facts.picture;
   window.facts.posted = window.input.posted();
+  window.facts.scale = window.cost.scale;
   window.facts.boxes = window.panel.boxes();
   window.facts.plot = window.panel.plotted();
   window.facts.font_px = ImGui::GetFontSize();
   window.facts.help = window.input.shows_help();
   window.facts.gl_error = context.take_error();
   window.log.write(*window.view, present_eye(window), window.facts);
+}
+
+int scaled(int pixels, double scale) {
+  return std::max(1, static_cast<int>(std::lround(pixels * scale)));
+}
+
+/// Draws what the window shows but for its panels into a picture of that size.
+Result<void> draw_scene(Window& window, render::Renderer& renderer, int width, int height) {
+  fill_list(window, height);
+  auto sized = renderer.resize(width, height);
+  return sized ? renderer.draw(window.list) : sized;
 }
 
 Result<void> draw_picture(Window& window, render::Renderer& renderer, const render::Context& context) {
@@ -376,14 +415,14 @@ Result<void> draw_picture(Window& window, render::Renderer& renderer, const rend
   mark_selected(window);
   write_insight(window);
   draw_cut(window);
-  window.panel.build(*window.view, window.input, window.picture_ms);
+  window.panel.build(*window.view, window.input, window.cost);
   ImGui::Render();
-  // A minimized window has no pixels.
-  if (width <= 0 || height <= 0) return {};
-  fill_list(window, height);
-  auto sized = renderer.resize(width, height);
-  if (!sized) return sized;
-  auto drawn = renderer.draw(window.list);
+  if (width <= 0 || height <= 0) {  // A window without pixels.
+    glfwWaitEventsTimeout(kWaitSeconds);
+    return {};
+  }
+  auto drawn =
+      draw_scene(window, renderer, scaled(width, window.cost.scale), scaled(height, window.cost.scale));
   if (!drawn) return drawn;
   auto shown = renderer.present(width, height);
   if (!shown) return shown;
@@ -393,8 +432,39 @@ Result<void> draw_picture(Window& window, render::Renderer& renderer, const rend
   return {};
 }
 
-Result<void> save_screenshot(const ViewOptions& options, const render::Renderer& renderer) {
+/// Draws a picture if it would differ from the last one, and otherwise waits a little for an event.
+Result<void> draw_when_due(Window& window, render::Renderer& renderer, const render::Context& context) {
+  const WallClock::time_point now = WallClock::now();
+  const std::shared_ptr<const SessionView> view = window.session.view();
+  const bool is_hidden = glfwGetWindowAttrib(context.window(), GLFW_ICONIFIED) == GLFW_TRUE;
+  if (view != window.view || view->playing) window.pace.wake(now);
+  if (is_hidden || !window.pace.is_due(now)) {
+    take_view(window);
+    glfwWaitEventsTimeout(kWaitSeconds);
+    return {};
+  }
+  int width = 0;
+  glfwGetFramebufferSize(context.window(), &width, nullptr);
+  window.cost.scale = window.pace.scale(now, width);
+  auto drawn = draw_picture(window, renderer, context);
+  const double picture_ms = milliseconds_since(now);
+  double& mean_ms = window.cost.milliseconds;
+  mean_ms = mean_ms > 0 ? 0.92 * mean_ms + 0.08 * picture_ms : picture_ms;
+  window.pace.drew(now, picture_ms);
+  return drawn;
+}
+
+/// Writes the last picture, with all pixels of the window.
+Result<void> save_screenshot(const ViewOptions& options, Window& window, render::Renderer& renderer,
+                             const render::Context& context) {
   if (options.screenshot.empty()) return {};
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(context.window(), &width, &height);
+  if (width > renderer.width() || height > renderer.height()) {
+    auto drawn = draw_scene(window, renderer, width, height);
+    if (!drawn) return drawn;
+  }
   const auto image = renderer.read_image();
   if (!image) return image.error();
   return render::write_png(image.value(), options.screenshot);
@@ -426,20 +496,17 @@ Result<void> run_window(Session& session, const ViewOptions& options) {
   glfwSetWindowUserPointer(handle, &window);
   glfwSetKeyCallback(handle, keep_key);
   glfwSetCharCallback(handle, keep_sign);
+  wake_by_events(handle);
   const UserInterface interface(handle);
   if (!interface.ready())
     return Error{ErrorCode::kUnsupported, "window", "the user interface does not start"};
 
-  auto last = WallClock::now();
   while (glfwWindowShouldClose(handle) == GLFW_FALSE && !is_over(window, options)) {
     glfwPollEvents();
-    const double elapsed_ms = milliseconds_since(last);
-    last = WallClock::now();
-    window.picture_ms = window.picture_ms > 0 ? 0.92 * window.picture_ms + 0.08 * elapsed_ms : elapsed_ms;
-    auto drawn = draw_picture(window, renderer.value(), context.value());
+    auto drawn = draw_when_due(window, renderer.value(), context.value());
     if (!drawn) return drawn;
   }
-  return save_screenshot(options, renderer.value());
+  return save_screenshot(options, window, renderer.value(), context.value());
 }
 
 }  // namespace

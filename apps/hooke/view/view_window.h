@@ -18,6 +18,9 @@ struct ViewOptions {
   DrawingStyle style = {};
   /// Size of the panels, 1 for letters of 13 pixels; without it what fits the window.
   std::optional<double> interface_scale = {};
+  /// Part of the window's width and height that is drawn, 0.25 to 1; without it what gives 20 pictures a
+  /// second while things move, and 1 when they rest.
+  std::optional<double> picture_scale = {};
   std::optional<double> stop_time = {};  ///< Closes the window when the simulated time reaches this [s].
   /// A .png file that gets the last picture before the window closes; empty for none.
   std::string screenshot = {};
