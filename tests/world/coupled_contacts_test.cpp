@@ -160,6 +160,31 @@ TEST_SUITE("world/coupled_contacts") {
     }
     CHECK(fastest < 2);
   }
+
+  TEST_CASE("a rope that ends where two beams meet is carried, and does not strain against the second beam") {
+    for (const HookKind joint : {HookKind::kFixed, HookKind::kHinge}) {
+      CAPTURE(static_cast<int>(joint));
+      World world = make_world(awake());
+      const BodyId post = add_box(world, {0, 1, 0}, {Real(0.03), Real(1), Real(0.03)}, 4);
+      const BodyId beam = add_box(world, {0.4, 2.02, 0}, {Real(0.5), Real(0.02), Real(0.03)}, 2);
+      // What is fixed to the second beam lies about the end of the rope, too.
+      const BodyId collar = add_box(world, {0, 2, 0}, {Real(0.05), Real(0.05), Real(0.05)}, 1);
+      take(world.add_hook({.kind = HookKind::kFixed, .b = {.body = post}, .anchor = {0, 0, 0}}));
+      take(world.add_hook(
+          {.kind = joint, .a = {.body = post}, .b = {.body = beam}, .anchor = {0, 2, 0}, .axis = {0, 1, 0}}));
+      take(world.add_hook(
+          {.kind = HookKind::kFixed, .a = {.body = beam}, .b = {.body = collar}, .anchor = {0, 2, 0}}));
+      RopeDesc desc{.total_mass = Real(0.5), .pins = {}, .radius = Real(0.006)};
+      for (int i = 0; i < 6; ++i) desc.points.push_back({0.031, 2 - 0.1 * i, 0});
+      const RopeId rope = take(world.add_rope(desc));
+      const HookId hook = take(
+          world.add_hook({.a = {.body = post}, .b = {.point = point(rope, 0)}, .anchor = {0.031, 2, 0}}));
+      run(world, 240);
+      CHECK(world.hook_force(hook).force.y == doctest::Approx(0.5 * kGravity).epsilon(0.01));
+      CHECK(length(world.hook_force(hook).force) < 0.6 * kGravity);
+      CHECK(world.hook_gap(hook) < 1e-5);
+    }
+  }
 }
 
 }  // namespace hooke

@@ -93,9 +93,63 @@ Real touching_radius(const std::vector<HookedNear>& near, std::uint32_t object, 
   return radius;
 }
 
+namespace {
+
+bool is_before(const Hooked& a, const Hooked& b) {
+  return std::pair{a.second, a.first} < std::pair{b.second, b.first};
+}
+
+/// Lists the points that hooks hold at a place of a body.
+void list_held(const state::Tables& t, std::vector<Hooked>& held) {
+  for (const state::Hook& hook : t.hooks) {
+    if (hook.kind != HookKind::kBall || hook.collide || hook.broken || !hook.holds_point()) continue;
+    const state::HookPlace& point = hook.point_end();
+    const std::uint32_t body = hook.other_end().body;
+    if (body == state::HookPlace::kWorld || hook.other_end().is_point()) continue;
+    for (std::uint32_t i = 0; i < point.particle_count; ++i) held.emplace_back(point.particle[i], body);
+  }
+}
+
+/// Adds the points that the first `known` pairs, which are sorted, have with body `from`, as pairs with `to`.
+void add_points_of(std::uint32_t from, std::uint32_t to, std::size_t known, std::vector<Hooked>& held) {
+  const auto end_of_known = [&] { return held.begin() + static_cast<std::ptrdiff_t>(known); };
+  const auto first = std::lower_bound(held.begin(), end_of_known(), Hooked{0, from}, is_before);
+  for (auto i = static_cast<std::size_t>(first - held.begin()); i < known && held[i].second == from; ++i) {
+    const Hooked reached = {held[i].first, to};
+    if (!std::binary_search(held.begin(), end_of_known(), reached, is_before)) held.push_back(reached);
+  }
+}
+
+/// Adds the bodies that a body which holds a point is hooked to and so passes through, and then all that is
+/// fixed to them. Its place may lie in one of them, where hook and contact would strain against each other
+/// without bound.
+void add_bodies_hooked_to_these(const state::Tables& t, std::vector<Hooked>& held) {
+  const auto body_of = [](const state::HookPlace& end) {
+    return end.is_point() ? state::HookPlace::kWorld : end.body;
+  };
+  bool only_fixed = false;
+  for (std::size_t known = 0; known != held.size(); only_fixed = true) {
+    std::sort(held.begin(), held.end(), is_before);
+    held.erase(std::unique(held.begin(), held.end()), held.end());
+    known = held.size();
+    for (const state::Hook& hook : t.hooks) {
+      if (hook.collide || hook.broken || (only_fixed && hook.kind != HookKind::kFixed)) continue;
+      const std::uint32_t a = body_of(hook.a);
+      const std::uint32_t b = body_of(hook.b);
+      if (a == state::HookPlace::kWorld || b == state::HookPlace::kWorld) continue;
+      add_points_of(a, b, known, held);
+      add_points_of(b, a, known, held);
+    }
+  }
+}
+
+}  // namespace
+
 void list_hooked(const state::Tables& t, std::vector<Hooked>& hooked) {
   hooked.clear();
   if (t.objects.empty()) return;
+  list_held(t, hooked);
+  add_bodies_hooked_to_these(t, hooked);
   const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
     if (!point.is_point() || body == state::HookPlace::kWorld) return;
     const state::Rows object = t.objects[point.object].particles;

@@ -73,7 +73,8 @@ void list_hooked_near(const state::Tables& tables, std::vector<HookedNear>& near
                                    std::uint32_t body, Real radius);
 
 /// Lists the pairs that hooks hold together, with the points that were inside the body; for a rope along
-/// which a body slides, all its points. Sorted.
+/// which a body slides, all its points; for a point that a body holds, also the bodies that this one is
+/// hooked to, and what is fixed to those. Sorted.
 void list_hooked(const state::Tables& tables, std::vector<Hooked>& hooked);
 [[nodiscard]] bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body);
 
