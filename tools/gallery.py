@@ -20,7 +20,7 @@ SHOWN = {"flag": 2, "jelly_on_net": 2}  # Clips of which the page has a small co
 GALLERY = {  # group: scene, without its ending, and the time of the picture [s]
     "The paper": {"fig1": 1, "paper/fig2": 1, "paper/fig3": 1, "paper/fig4": 1, "paper/fig5": 1, "paper/fig6": 1,
                   "paper/fig7": 0.3},
-    "Everything together": {"showcase": 3},
+    "Everything together": {"showcase": 6},
     "Cloth": {"cloth_over_sphere": 2, "curtain": 3, "flag": 3, "laundry_pile": 3},
     "Ropes and hair": {"hair_on_shoulders": 3, "hair_wind": 2},
     "What breaks": {"castle_wall": 1.5, "glass_pane": 1, "chandelier": 1.72},

@@ -33,10 +33,10 @@ def percent(kind, value):
     return chunk(kind, chunk(0x0030, struct.pack("<H", value)))
 
 
-def material(name, rgb, shininess, image=None):
+def material(name, rgb, shininess, image=None, transparency=0):
     parts = [chunk(0xA000, text(name)), color(0xA010, rgb), color(0xA020, rgb), color(0xA030, (60, 60, 60)),
              percent(0xA040, shininess), percent(0xA041, 50),
-             percent(0xA050, 0),
+             percent(0xA050, transparency),
              chunk(0xA100, struct.pack("<H", 3))]
     if image:
         parts.append(chunk(0xA200, chunk(0x0030, struct.pack("<H", 100)), chunk(0xA300, text(image))))
@@ -177,6 +177,32 @@ def lantern_pixel(u, v):
     return mix(rgb, (0.90, 0.70, 0.26), (0.010 - abs(edge - 0.062)) / 0.004)
 
 
+# ---- pudding ----------------------------------------------------------------------------------------------
+
+LOBES, LOBE_SEGMENTS = 16, 5
+
+
+def pudding():
+    """Jelly turned out of a square mold with flutes, 0.4 m high and 0.9 m wide; it fills a box of that size."""
+    mesh = Mesh()
+    profile = [(0.0, 0.0, 0, 1), (0.445, 0.0, 0.7, 1), (0.455, 0.03, 1, 2), (0.45, 0.1, 1, 2), (0.44, 0.18, 1, 2),
+               (0.43, 0.26, 1, 2), (0.415, 0.33, 0.8, 2), (0.39, 0.375, 0.5, 2), (0.35, 0.398, 0.2, 2),
+               (0.29, 0.404, 0, 2), (0.0, 0.396, 0, 2)]  # half width, height, depth of the flutes, smoothing group
+
+    def corner(point, segment):
+        half, height, depth, _ = point
+        angle = 2 * math.pi * (segment % (LOBES * LOBE_SEGMENTS)) / (LOBES * LOBE_SEGMENTS)
+        x, y = math.cos(angle), math.sin(angle)
+        radius = half * (x ** 4 + y ** 4) ** -0.25  # a square with round corners
+        radius *= 1 + 0.06 * depth * (abs(math.cos(0.5 * LOBES * angle)) ** 0.7 - 0.7)
+        return (radius * x, radius * y, height), (0.0, 0.0)
+
+    for low, high in zip(profile, profile[1:]):
+        for s in range(LOBES * LOBE_SEGMENTS):
+            mesh.quad((corner(low, s), corner(low, s + 1), corner(high, s + 1), corner(high, s)), "jelly", high[3])
+    return file_3ds([material("jelly", (178, 18, 20), 85, transparency=22)], "pudding", mesh)
+
+
 # ---- crate ------------------------------------------------------------------------------------------------
 
 CRATE_HALF, CRATE_FRAME, CRATE_DEPTH = 0.25, 0.055, 0.018
@@ -237,7 +263,7 @@ def crate_pixel(u, v):
 def main():
     folder = pathlib.Path(__file__).resolve().parent.parent / "scenes/models"
     files = {"lantern.3ds": lantern(), "lantern.png": file_png(512, 256, lantern_pixel),
-             "crate.3ds": crate(), "crate.png": file_png(256, 256, crate_pixel)}
+             "pudding.3ds": pudding(), "crate.3ds": crate(), "crate.png": file_png(256, 256, crate_pixel)}
     if sys.argv[1:] == ["--check"]:
         stale = [name for name, content in files.items()
                  if not (folder / name).is_file() or (folder / name).read_bytes() != content]

@@ -565,7 +565,7 @@ class UsdReader(NodeReader):
         mixed, showcase = self.node("read_usda.mjs", "mixed.usda", "showcase.usda")
         # Nine bodies, one of them with two pieces, a rope, a cloth, a solid, particles and a distance.
         self.assertEqual((mixed["ok"], mixed["error"], mixed["meshes"]), (True, "", 10 + 5), mixed)
-        self.assertEqual((showcase["ok"], showcase["error"], showcase["meshes"]), (True, "", 9), showcase)
+        self.assertEqual((showcase["ok"], showcase["error"], showcase["meshes"]), (True, "", 194), showcase)
 
     def test_tinyusdz_refuses_what_is_wrong(self):
         self.export("x.usda")
