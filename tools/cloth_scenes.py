@@ -357,8 +357,8 @@ def tablecloth():
         "Tablecloth",
         "A cloth is drawn from under a plate, a bowl and a vase at six meters per second. Friction drags them along only "
         "as long as the cloth slides under them, and the table stops them.",
-        3, [1.5, 1.45, 1.7], [0.1, 0.7, 0],
-        {"ground": {}, "oak": {"friction": friction}, "silk": {}} |
+        3, [1.2, 1.75, 1.4], [0.1, 0.6, 0],
+        {"ground": {"color": [0.12, 0.11, 0.10]}, "oak": {"friction": friction}, "silk": {"color": [0.30, 0.03, 0.06]}} |
         {plate[5]: {"friction": friction} for plate in plates}, [
             ground(),
             body("table", "oak", box(long / 2, 0.02, wide / 2), [0, top - 0.02, 0], "static"),

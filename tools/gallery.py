@@ -21,10 +21,10 @@ GALLERY = {  # group: scene, without its ending, and the time of the picture [s]
     "The paper": {"fig1": 1, "paper/fig2": 1, "paper/fig3": 1, "paper/fig4": 1, "paper/fig5": 1, "paper/fig6": 1,
                   "paper/fig7": 0.3},
     "Everything together": {"showcase": 6},
-    "Cloth": {"cloth_over_sphere": 2, "curtain": 3, "flag": 3, "laundry_pile": 3},
-    "Ropes and hair": {"hair_on_shoulders": 3, "hair_wind": 2},
-    "What breaks": {"castle_wall": 1.5, "glass_pane": 1, "chandelier": 1.72},
-    "Bodies": {"domino_spiral": 12, "card_house": 1, "pool_break": 0.7},
+    "Cloth": {"cloth_over_sphere": 2, "curtain": 4, "flag": 3, "laundry_pile": 3, "tablecloth": 0.6, "washing_line": 6},
+    "Ropes and hair": {"hair_on_shoulders": 3, "hair_wind": 2, "suspension_bridge": 2, "mobile": 2},
+    "What breaks": {"castle_wall": 1.5, "glass_pane": 1, "chandelier": 1.72, "wrecking_ball": 2.2},
+    "Bodies": {"domino_spiral": 12, "card_house": 1, "pool_break": 0.7, "ragdoll_stairs": 1.2},
     "Jelly": {"cushions": 4, "jelly_on_net": 2},
 }
 

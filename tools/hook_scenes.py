@@ -1,7 +1,7 @@
 """Scenes of bodies that hooks join, for make_scenes.py."""
 import math
 
-from scene_kit import (DT, G, TONES, X, Y, Z, add, body, box, cross, fall, ground, hook, product, promise,
+from scene_kit import (DT, G, TONES, X, Y, Z, add, body, box, cross, fall, ground, hook, product, low_sun, promise,
                        rotated, scaled, scene, turn)
 
 MATERIALS = {"ground": {"friction": 0.6}} | {tone: {"friction": 0.6} for tone in TONES}
@@ -103,7 +103,7 @@ def wrecking_ball():
         "A ball of 1 t on ten links of 4 kg falls as one pendulum, passes the lowest point with "
         f"{abs(rate) * reach:.1f} m/s, and hits a wall of columns whose bricks are glued to each other. "
         "Until then the chain is as long as it was; glue breaks where the ball hits, and not at the edges.",
-        6, [-5.5, 3.6, 9.5], [0.2, 2.4, 0], {
+        6, [-4.0, 6.4, 7.2], [-0.1, 2.9, 0], {
             "ground": {"friction": 0.6}, "steel": {"friction": 0.4}, "clay": {"friction": 0.6},
             "sand": {"friction": 0.6}
         }, [
@@ -136,7 +136,7 @@ def wrecking_ball():
             *(hook(f"glue_{i}", "fixed", f"column_{i}[1]", add(wall, [0, brick[1], 2 * i * brick[2]]),
                    f"column_{i}", break_force=20000, break_torque=4000, collide=True,
                    array={"grid": [1, rows - 1, 1], "spacing": [1, 2 * brick[1], 1]}) for i in range(columns))
-        ])
+        ], fov_deg=42, **low_sun([0.7, -0.6, -0.5]))
 
 
 def force_at_top(ball, reach, link, links, length, angle, rate):
@@ -366,7 +366,9 @@ def ragdoll_stairs():
         "Ragdolls on stairs",
         "Four humans of 14 capsules, with cones and hinges in their joints, are thrown down ten stairs. The "
         "pelvis flies as y0 - g t^2 / 2 for 0.2 s; in the end they lie still at the foot, in one piece.", 12,
-        [9.5, 4.2, 6.5], [2.2, 1, 0], {"ground": {"friction": 0.5}, "steel": {"friction": 0.3}} |
+        [7.6, 5.0, 6.2], [2.4, 0.9, 0], {
+            "ground": {"color": [0.20, 0.16, 0.12], "friction": 0.5},
+            "steel": {"color": [0.42, 0.38, 0.33], "metalness": 0, "roughness": 0.9, "friction": 0.3}} |
         {tone: {"friction": 0.4} for tone in TONES}, [
             ground(),
             *(body(f"stair_{i}", "steel", box(tread / 2, (steps - i) * rise / 2, 3),
@@ -377,7 +379,7 @@ def ragdoll_stairs():
             promise("gap", "<", 0.005),
             *(promise("height", "<", 1.5, f"human_{tone}_pelvis[0]") for tone in TONES),
             promise("kinetic_energy", "<", 0.5)
-        ], hooks=hooks)
+        ], hooks=hooks, fov_deg=40, **low_sun([0.5, -0.7, -0.6], 1.1))
 
 
 def joint_grid():

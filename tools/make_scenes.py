@@ -19,7 +19,7 @@ from field_scenes import FIELD_SCENES
 from hook_scenes import HOOK_SCENES
 from paper_scenes import fig5, fig6, rollback_room, wall
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, at_point, body, box, cross, dot, fall,
-                       fibonacci_points, ground, hull_of, prism, product, promise, rotated, scaled,
+                       fibonacci_points, ground, hull_of, prism, product, low_sun, promise, rotated, scaled,
                        scene, sector, slab, solid_mass, solid_moments, spot, text_of, turn, weight_energy)
 from rope_scenes import ROPE_SCENES
 from soft_contact_scenes import SOFT_CONTACT_SCENES
@@ -159,7 +159,7 @@ def domino_spiral():
         "Spiral of dominoes",
         f"{count} dominoes, 0.5 m high, along a spiral. The wave takes between way / (1.6 sqrt(g H)) and "
         "way / (0.6 sqrt(g H)) for the way of 59.8 m.", round(way / (0.6 * math.sqrt(G * 0.5))),
-        [4.5, 5.5, 6], [0, 0, 0.4], {"ground": {"friction": 0.6}, "ivory": {"friction": 0.5}},
+        [3.6, 4.9, 5.6], [0, 0, 0.25], {"ground": {"friction": 0.6}, "ivory": {"friction": 0.5}},
         [ground(),
          body("domino", "ivory", box(*half), array={"list": places, "rotations": rotations})], [
              promise("tilt", "<", 2, f"domino[{count - 1}]", at_step=round(way /
@@ -168,7 +168,7 @@ def domino_spiral():
              promise("tilt", ">", 60, f"domino[{count // 2}]", at_step=950),
              promise("tilt", ">", 30, f"domino[{count - 2}]"),
              promise("tilt", ">", 30, f"domino[{count - 1}]")
-         ])
+         ], fov_deg=42, **low_sun([-0.8, -0.5, -0.2]))
 
 
 def pool_break():
@@ -187,7 +187,7 @@ def pool_break():
         "The cue ball breaks the rack at 8 m/s. Beside the table a ball starts to slide at 2 m/s: friction "
         "0.2 makes it roll after t = 2 v / (7 mu g) = 0.291 s, then at 5/7 v = 1.4286 m/s (Coriolis 1835).",
         5,
-        [-0.5, 0.75, 0.95], [0.52, 0, -0.05], {
+        [-0.1, 0.6, 0.72], [0.5, 0, -0.02], {
             "ground": {"color": [0.05, 0.15, 0.10], "friction": 0.2}, "oak": {"friction": 0.2},
             "ivory": {"roughness": 0.12}, "sand": {"color": [0.75, 0.5, 0.06], "roughness": 0.12},
             "clay": {"color": [0.5, 0.04, 0.03], "roughness": 0.12},
@@ -306,8 +306,8 @@ def card_house():
         "House of cards",
         "Four storeys of cards that lean 20 degrees. A pair stands when friction is at least tan(20) / 2 = "
         "0.18, with a load on top up to tan(20) = 0.36; it is 0.6. Every card stays within 5 % of its length "
-        "of where it was; the potential energy is the sum of m g y.", 60, [0.2, 0.42, 0.95], [0, 0.18, 0],
-        {"ground": {"friction": friction}, "ivory": {"friction": friction}}, [
+        "of where it was; the potential energy is the sum of m g y.", 60, [0.24, 0.46, 0.55], [0, 0.16, 0],
+        {"ground": {"color": [0.20, 0.12, 0.065], "friction": friction}, "ivory": {"friction": friction}}, [
             ground(),
             body("left", "ivory", shape, density=700, rotation=turn(Z, -lean), array={"list": left}),
             body("right", "ivory", shape, density=700, rotation=turn(Z, lean), array={"list": right}),

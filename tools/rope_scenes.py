@@ -1,7 +1,7 @@
 """Scenes of ropes with what they are tied to; make_scenes.py writes them."""
 import math
 
-from scene_kit import DT, G, HAIR, X, Z, add, at_point, body, box, fall, ground, promise, scaled, scene, turn
+from scene_kit import DT, G, HAIR, X, Z, add, at_point, body, box, fall, ground, low_sun, promise, scaled, scene, turn
 
 
 def line(a, b, segments):
@@ -130,7 +130,7 @@ def suspension_bridge():
         "Seventeen planks on hangers, the hangers on two cables: bodies, ropes on ropes, everything tied. The "
         "cables hang in the polygon of their loads, so that statics gives the pull in the middle: half of what "
         "the middle hanger carries, over the slope beside it.",
-        10, [5.5, 4.2, 11], [0, 1.3, 0],
+        10, [4.4, 5.2, 8.4], [0, 0.95, 0],
         {"ground": {}, "oak": {}, "cable": {}, "slate": {}, "moss": {}}, bodies, [
             tension(pull * math.hypot(1, rise / gap), "cable_l", planks // 2 + 1, 0.02),
             tension(pull * math.hypot(1, rise / gap), "cable_r", planks // 2 + 1, 0.02),
@@ -423,7 +423,9 @@ def washing_line():
         "Washing line",
         "Towels hang on a line by pegs: points of cloths tied to places along a rope. In the first seconds the air "
         "is still, and the line carries the weight of all three; then the wind comes.",
-        10, [1.2, 2.0, 5.4], [0, 1.3, 0], {"ground": {}, "slate": {}, "hemp": {}, "rose": {}, "ivory": {}, "felt": {}}, [
+        10, [1.4, 3.2, 4.2], [0.2, 1.2, 0], {
+            "ground": {"color": [0.16, 0.15, 0.10]}, "slate": {}, "hemp": {}, "rose": {"color": [0.45, 0.04, 0.06]}, "ivory": {},
+            "felt": {"color": [0.05, 0.16, 0.22]}}, [
             ground(),
             *posts([(-span / 2 - 0.03, 0), (span / 2 + 0.03, 0)], top + 0.05, 0.035),
         ], [
@@ -436,7 +438,8 @@ def washing_line():
         ropes=[rope("line", "hemp", points, 0.3, 0.006, pins=[0, "last"])],
         cloths=cloths,
         hooks=hooks,
-        timeline=[{"at_step": 240, "wind": {"velocity": [1, 0, 2.6], "gust": 0.5}}])
+        timeline=[{"at_step": 240, "wind": {"velocity": [1, 0, 2.6], "gust": 0.5}}],
+        **low_sun([-0.6, -0.7, -0.5], 0.8), fov_deg=40)
 
 
 def cantilever_end(load, stiffness, length):
@@ -519,7 +522,7 @@ def hair_wind():
         "Sixty hairs of 30 cm, rods with EI = 2e-6 N m^2, stand clamped on a head that moves to and fro. They fall, "
         "swing after it and, after four seconds, blow to one side. Nearer than 2 cm they push each other away. A ball "
         "falls beside them.",
-        8, [0.3, 1.2, 0.72], [0, 1.11, 0], {"ground": {}, **HAIR, "clay": {}, "slate": {}}, [
+        8, [0.3, 1.46, 0.72], [-0.02, 1.1, 0], {"ground": {"color": [0.10, 0.09, 0.085]}, **HAIR, "clay": {}, "slate": {}}, [
             ground(),
             body("head", "skin", {"sphere": {"radius": head}}, [0, top, 0], "kinematic",
                  motion={"sine": {"amplitude": [0.06, 0, 0], "frequency_hz": 0.8}}),
@@ -534,7 +537,7 @@ def hair_wind():
         ropes=ropes,
         hooks=hooks,
         timeline=[{"at_step": 240, "wind": {"velocity": [-4, 0, 1.5], "gust": 0.4}}],
-        sky={"sun_direction": [-0.75, -0.6, -0.25]}, fov_deg=42)
+        sky={"sun_direction": [-0.75, -0.6, -0.25]}, fov_deg=38)
 
 
 def twisted_cable():

@@ -230,6 +230,12 @@ def spot(position, target, color, intensity, inner_deg, outer_deg):
             "intensity": intensity, "inner_deg": inner_deg, "outer_deg": outer_deg}
 
 
+def low_sun(direction, intensity=1.4):
+    """Warm light of a low sun, whose shadows are long."""
+    return {"sky": {"brightness": 0.85, "sun": 0},
+            "lights": [{"kind": "directional", "direction": direction, "color": [1, 0.82, 0.6], "intensity": intensity}]}
+
+
 def box(x, y, z):
     return {"box": {"half_extents": [x, y, z]}}
 

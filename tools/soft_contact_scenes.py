@@ -96,8 +96,8 @@ def hair_on_shoulders():
         "Hair on shoulders",
         "Sixty hairs of 42 cm fall on a cape that lies on shoulders, and rest on it. Hair pushes hair away, but touches "
         "the cape strand by strand.",
-        4, [0.62, 1.6, 1.05], [0, 1.38, 0], {
-            "ground": {}, "skin": HAIR["skin"], "slate": {}, "brown_hair": HAIR["brown_hair"], "dark_hair": HAIR["dark_hair"],
+        4, [0.56, 1.95, 0.95], [0, 1.33, 0], {
+            "ground": {"color": [0.10, 0.09, 0.085]}, "skin": HAIR["skin"], "slate": {}, "brown_hair": HAIR["brown_hair"], "dark_hair": HAIR["dark_hair"],
             "rose": {"color": [0.35, 0.03, 0.06], "roughness": 0.9, "sheen": 0.6, "friction": 0.6}
         }, [
             ground(),
@@ -146,7 +146,7 @@ def laundry_pile():
     return scene(
         "Pile of laundry",
         "A towel, a shirt, a scarf and a coil of rope fall on a stool one after the other, and lie in a heap.",
-        6, [0.6, 0.7, 0.75], [0, 0.1, 0], {"ground": {"friction": 0.6}, "oak": {"friction": 0.6}, "rose": {"friction": 0.6}, "ivory": {"friction": 0.6},
+        6, [0.5, 0.66, 0.6], [0, 0.17, 0], {"ground": {"color": [0.20, 0.12, 0.065], "friction": 0.6}, "oak": {"friction": 0.6}, "rose": {"friction": 0.6}, "ivory": {"friction": 0.6},
                                        "moss": {"friction": 0.6}, "hemp": {"friction": 0.6}}, [
             ground(),
             body("stool", "oak", {"cylinder": {"radius": 0.12, "half_height": 0.1}}, [0, 0.1, 0], "static"),

@@ -277,7 +277,7 @@ def mobile():
         "Mobile",
         "Three arms and four leaves, each arm with its own weight. Arms hang level where the moments about their eyes are "
         "in balance; each thread carries all that is below it. Threads take 60 N.", 20,
-        [0.35, 3.3, 3.6], [0.35, 3.3, 0],
+        [1.1, 2.75, 3.0], [0.35, 3.3, 0],
         {"oak": {}, "cable": {}, "steel": {}, "rose": {}, "slate": {}, "sand": {}, "ivory": {}}, bodies, promises,
         ropes=threads, hooks=hooks)
 
