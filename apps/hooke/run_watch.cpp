@@ -222,6 +222,12 @@ std::optional<RunWarning> lost_parts(const World& world, const SceneObject& obje
       .cure = "a smaller cell"};
 }
 
+/// Whether two entries are of one object: a name may come back with another.
+bool are_same(const SceneObject& a, const SceneObject& b) {
+  return a.name == b.name && a.kind == b.kind && a.body == b.body && a.rope == b.rope && a.cloth == b.cloth &&
+         a.solid == b.solid && a.particles == b.particles && a.field == b.field && a.hook == b.hook;
+}
+
 RunWarning gap_at_start(double gap) {
   return {.what = text_of("began with its ends %.3g m apart: it draws them together", gap),
           .worst = gap,
@@ -260,7 +266,7 @@ void RunWatch::note(std::uint64_t order, int kind, double ratio, RunWarning warn
 bool RunWatch::knows_all(std::span<const SceneObject> objects) {
   if (objects.size() != watched_.size()) return false;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (watched_[i].object.name != objects[i].name) return false;
+    if (!are_same(watched_[i].object, objects[i])) return false;
     watched_[i].object.broken = objects[i].broken;
   }
   return true;
@@ -275,7 +281,7 @@ void RunWatch::take_new_objects(const Simulation& simulation) {
   std::size_t next = 0;
   for (const SceneObject& object : objects) {
     std::size_t at = next;
-    while (at < watched_.size() && watched_[at].object.name != object.name) ++at;
+    while (at < watched_.size() && !are_same(watched_[at].object, object)) ++at;
     if (at < watched_.size()) {
       now.push_back(std::move(watched_[at]));
       next = at + 1;
@@ -574,7 +580,8 @@ void RunWatch::look(const Simulation& simulation, const StepReport& report) {
     look_at_gap(world, watched);
   }
   look_at_report(world, report);
-  if (world.time() < next_overlaps_) return;
+  const bool went_back = world.time() < next_overlaps_ - 2 * kOverlapInterval;
+  if (world.time() < next_overlaps_ && !went_back) return;
   next_overlaps_ = world.time() + kOverlapInterval;
   look_at_overlaps(world);
   for (const Watched& watched : watched_) look_at_softness(simulation, watched);

@@ -4,6 +4,7 @@
 #include "../temporary_folder.h"
 
 #include <doctest/doctest.h>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -104,6 +105,22 @@ TEST_SUITE("session/model") {
       CHECK(view->said->text == "the model is still now");
       CHECK(height_of(*view) == doctest::Approx(still));
     }
+  }
+
+  TEST_CASE("models of one folder have scenes of different names, so that nothing saved overwrites another") {
+    const test::TemporaryFolder folder;
+    const std::string wide = write_wide_model(folder, 3);
+    const std::string other = folder / "wide.ply.obj";
+    std::filesystem::copy_file(wide, other);
+    const auto one = document_of_model(wide, {.fit = 1});
+    const auto two = document_of_model(other, {.fit = 1});
+    REQUIRE(one);
+    REQUIRE(two);
+    CHECK(one.value().scene.path == wide + ".json");
+    CHECK(two.value().scene.path == other + ".json");
+    Show show(wide);
+    CHECK(show.done(SaveFigures{})->said->text.starts_with("saved '" + wide + "-figures.csv'"));
+    CHECK(std::filesystem::exists(wide + "-figures.csv"));
   }
 
   TEST_CASE("undo puts back the form before, and what was edited stays in the next form") {

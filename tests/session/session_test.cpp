@@ -1,8 +1,14 @@
 #include "hooke/session/session.h"
 
+#include "simulation_of.h"
+
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <doctest/doctest.h>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -26,11 +32,7 @@ const char* const kScene = R"({
 })";
 
 Simulation make_simulation() {
-  Loaded<Scene> scene = parse_scene(kScene, "scene.json");
-  for (const Error& error : scene.errors) FAIL(to_line(error));
-  Loaded<Simulation> simulation = Simulation::create(std::move(*scene.value));
-  for (const Error& error : simulation.errors) FAIL(to_line(error));
-  return std::move(*simulation.value);
+  return simulation_of(kScene);
 }
 
 constexpr std::size_t kBudget = std::size_t{64} << 20;
@@ -139,18 +141,18 @@ TEST_SUITE("session/live_scene") {
     const std::uint64_t last = live.step_count();
     for (const std::uint64_t step : {60, 3, 17, 18, 36, 37, 47, 48, 0, 77}) {
       CAPTURE(step);
-      live.seek(step);
+      REQUIRE(live.seek(step));
       CHECK(live.step_count() == step);
       CHECK(hash_of(live) == hashes[step]);
       CHECK(live.last_step() == last);
     }
     // Played on, it repeats what happened.
-    live.seek(10);
+    REQUIRE(live.seek(10));
     make_steps(live, 50);
-    live.seek(60);
+    REQUIRE(live.seek(60));
     CHECK(hash_of(live) == hashes[60]);
     // A new action forgets what came after it.
-    live.seek(30);
+    REQUIRE(live.seek(30));
     CHECK(live.held() == "ball");
     REQUIRE(live.act(Release{}).done);
     CHECK(live.last_step() == 30);
@@ -183,7 +185,7 @@ TEST_SUITE("session/live_scene") {
     CHECK(live.timeline().moments() >= 3);
     CHECK(live.undo_count() == 1);
     for (const std::uint64_t step : {299, 1, 150, 77, 300}) {
-      live.seek(step);
+      REQUIRE(live.seek(step));
       CHECK(hash_of(live) == hashes[step]);
     }
     // Many actions: those that lie farthest back cannot be undone any more.
@@ -191,6 +193,72 @@ TEST_SUITE("session/live_scene") {
     CHECK(live.undo_count() < 40);
     CHECK(live.undo_count() > 1);
     CHECK(live.timeline().moments() >= 2);
+  }
+
+  TEST_CASE("the smallest budget holds what is done before the first step, and what is undone") {
+    LiveScene live(make_simulation(), 1);
+    REQUIRE(live.act(Shoot{ray_at(-3, 3)}).done);
+    REQUIRE(live.undo().done);
+    for (int i = 0; i < 10; ++i) {
+      REQUIRE(live.act(Grab{ray_at(0, 0.3)}).done);
+      REQUIRE(live.act(Release{}).done);
+    }
+    CHECK(live.timeline().moments() == 2);
+    CHECK(live.timeline().interval() < 1000);
+    make_steps(live, 3);
+    REQUIRE(live.seek(0));
+    CHECK(live.step_count() == 0);
+  }
+
+  TEST_CASE("what is refused changes nothing, so that a repeat gives the same names and bits") {
+    LiveScene live(make_simulation(), kBudget);
+    const std::uint64_t start = hash_of(live);
+    CHECK_FALSE(live.act(Shoot{.ray = ray_at(-2, 5), .radius = -1}).done);
+    CHECK(hash_of(live) == start);
+    CHECK(live.act(Shoot{ray_at(-2, 5)}).text == "shot 'ball_1'");
+    make_steps(live, 3);
+    const std::uint64_t last = hash_of(live);
+    REQUIRE(live.seek(0));
+    REQUIRE(live.seek(3));
+    CHECK(live.simulation().find("ball_1") != nullptr);
+    CHECK(hash_of(live) == last);
+
+    // An edit of which a part cannot be.
+    auto document = std::make_shared<SceneDocument>();
+    document->scene = live.simulation().scene();
+    document->scene.world.gravity = {0, 1, 0};
+    document->scene.world.wind.velocity = {5, 0, 0};
+    document->scene.world.workers = -1;
+    CHECK_FALSE(live.act(Edit{document, "gravity"}).done);
+    CHECK(live.simulation().world().desc().gravity.y == doctest::Approx(-9.81));
+    CHECK(live.simulation().world().desc().wind.velocity.x == doctest::Approx(1));
+    CHECK(hash_of(live) == last);
+  }
+
+  TEST_CASE("a hand that must let go says why") {
+    LiveScene live(make_simulation(), kBudget);
+    REQUIRE(live.act(Grab{ray_at(0, 0.3)}).done);
+    make_steps(live, 1);
+    CHECK_FALSE(live.take_lost());
+    REQUIRE(live.act(MoveHand{{0, 1e30, 0}}).done);
+    make_steps(live, 1);
+    const std::optional<std::string> lost = live.take_lost();
+    REQUIRE(lost);
+    CHECK(lost->starts_with("the hand lost 'ball': "));
+    CHECK(lost->find("target") != std::string::npos);
+    CHECK_FALSE(live.hand().holds());
+    make_steps(live, 1);
+    CHECK_FALSE(live.take_lost());
+  }
+
+  TEST_CASE("a way to a step ends when it is told to") {
+    LiveScene live(make_simulation(), kBudget);
+    make_steps(live, 20);
+    int asked = 0;
+    REQUIRE(live.seek(0));
+    CHECK(live.seek(19, [&] { return ++asked > 2; }));
+    CHECK(live.step_count() == 17);  // There is a state at 15.
+    CHECK(live.last_step() == 20);
   }
 
   TEST_CASE("balls fly, copies fall, pins hold, strings tie, and removed objects are gone") {
@@ -267,6 +335,46 @@ TEST_SUITE("session/session") {
     CHECK(view->places.size() == 5);
     CHECK(view->picture->objects.size() == 5);
     CHECK(view->droppable == std::vector<std::string>{"ball", "rope", "flag", "jelly"});
+  }
+
+  TEST_CASE("while a change is built, the view is the one before, whole") {
+    std::atomic<const Session*> shown = nullptr;
+    std::vector<std::shared_ptr<const SessionView>> views;
+    Loader loader = loader_of(kScene);
+    loader.build = [&](const Scene& scene, const std::function<void(const std::string&)>& progress) {
+      progress("building");
+      if (const Session* session = shown) views.push_back(session->view());
+      return Simulation::create(scene);
+    };
+    Session session("", loader, {.playing = false});
+    session.wait_for([](const SessionView& v) { return v.stage == SessionView::Stage::kReady; }, kLong);
+    shown = &session;
+    session.post(Select{"ball"});
+    const std::uint64_t number = session.post(Change{"bodies[1].mass", "3"});
+    const auto view = session.wait_for([&](const SessionView& v) { return v.commands >= number; }, kLong);
+    CHECK(view->said->text.find("starts anew") != std::string::npos);
+    CHECK(view->progress.empty());
+    CHECK(view->listed->size() == 5);
+    REQUIRE(views.size() == 1);
+    CHECK(views[0]->progress == "building");
+    CHECK(views[0]->commands < number);
+    CHECK(views[0]->built < view->built);
+    REQUIRE(views[0]->listed != nullptr);
+    CHECK(views[0]->listed->size() == 5);
+  }
+
+  TEST_CASE("it ends between two steps, whatever was asked for") {
+    const auto start = std::chrono::steady_clock::now();
+    {
+      Session session("", loader_of(kScene), {.playing = false});
+      const std::uint64_t number = session.post(MakeSteps{1});
+      session.wait_for([&](const SessionView& v) { return v.commands >= number; }, kLong);
+      session.post(MakeSteps{100'000'000});
+      session.post(MakeSteps{100'000'000});
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    CHECK(passed.count() < kLong);
   }
 
   TEST_CASE("a scene that cannot be built says why") {

@@ -123,8 +123,12 @@ Outcome LiveScene::act(const Action& action) {
   if (title.empty() && !hand_.holds()) return {false, "nothing is held"};
   std::optional<Moment> before;
   if (!title.empty()) before = moment(title);
+  const std::uint64_t added = added_;
   Outcome outcome = perform(action);
-  if (!outcome.done) return outcome;
+  if (!outcome.done) {
+    added_ = added;  // A repeat does not know of what failed, and names the next object as it was named.
+    return outcome;
+  }
   const bool has_future = last_step_ > step_count() || timeline_.actions().size() > next_action_;
   if (has_future) timeline_.cut(step_count(), next_action_);
   last_step_ = step_count();
@@ -144,7 +148,10 @@ void LiveScene::repeat_actions() {
 Result<void> LiveScene::step() {
   repeat_actions();
   const Result<bool> held = hand_.before_step(simulation_.world(), simulation_.scene().dt);
-  if (!held) hand_.release(simulation_.world());
+  if (!held) {
+    if (hand_.holds()) lost_ = "the hand lost '" + this->held() + "': " + to_line(held.error());
+    hand_.release(simulation_.world());
+  }
   report_ = simulation_.step();
   if (!report_.moved) return Error{ErrorCode::kOutOfRange, simulation_.scene().path, "the step did not move"};
   last_step_ = std::max(last_step_, step_count());
@@ -152,14 +159,16 @@ Result<void> LiveScene::step() {
   return {};
 }
 
-void LiveScene::seek(std::uint64_t step) {
+Result<void> LiveScene::seek(std::uint64_t step, const std::function<bool()>& stops) {
   const std::uint64_t target = std::min(step, last_step_);
   const Moment* start = timeline_.find(target);
   const bool is_behind = target < step_count();
   if (start != nullptr && (is_behind || start->step > step_count())) go_to(*start);
-  while (step_count() < target && this->step()) {
+  while (step_count() < target && (!stops || !stops())) {
+    if (Result<void> done = this->step(); !done) return done;
   }
   repeat_actions();
+  return {};
 }
 
 Outcome LiveScene::undo() {
@@ -383,9 +392,13 @@ Outcome LiveScene::perform(const Cut& cut) {
 Outcome LiveScene::perform(const Edit& edit) {
   World& world = simulation_.world();
   const WorldDesc& wanted = edit.document->scene.world;
-  for (const Result<void>& done :
-       {world.set_gravity(wanted.gravity), world.set_wind(wanted.wind), world.set_workers(wanted.workers)}) {
-    if (!done) return {false, to_line(done.error())};
+  const SimulationSnapshot before = simulation_.snapshot();
+  Result<void> done = world.set_gravity(wanted.gravity);
+  if (done) done = world.set_wind(wanted.wind);
+  if (done) done = world.set_workers(wanted.workers);
+  if (!done) {
+    (void)simulation_.restore(before);  // It is not empty.
+    return {false, to_line(done.error())};
   }
   document_ = edit.document;
   return {true, edit.what};

@@ -6,9 +6,11 @@
 #include "hooke/session/timeline.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hooke::app {
 
@@ -27,8 +29,9 @@ class LiveScene {
   Outcome act(const Action& action);
   /// Makes one step. The Error says that the world did not move.
   Result<void> step();
-  /// Goes to a step that was made; a later one counts as the last one.
-  void seek(std::uint64_t step);
+  /// Goes to a step that was made; a later one counts as the last one. It ends early, without an Error, once
+  /// `stops` returns true, which it asks before each step. The Error says that the world did not move on.
+  Result<void> seek(std::uint64_t step, const std::function<bool()>& stops = {});
   /// Goes back to before the last action that was not undone: a whole grip from grab to release counts as
   /// one.
   Outcome undo();
@@ -54,6 +57,8 @@ class LiveScene {
   [[nodiscard]] std::string name_at(const Ray& ray) const;
   /// Name of the object that the hand holds; empty for none.
   [[nodiscard]] std::string held() const;
+  /// Returns why the hand lost what it held in a step since the last call; nothing for no such case.
+  [[nodiscard]] std::optional<std::string> take_lost() { return std::exchange(lost_, std::nullopt); }
   /// Report of the last step.
   [[nodiscard]] const StepReport& report() const { return report_; }
 
@@ -98,11 +103,12 @@ class LiveScene {
   Hand hand_;
   Timeline timeline_;
   SharedDocument document_;
-  std::vector<Undone> undone_;   ///< The last one first to be done again comes last.
+  std::vector<Undone> undone_;   ///< Redo takes the last one.
   std::size_t next_action_ = 0;  ///< Number of actions of the log that were done.
   std::uint64_t last_step_ = 0;
   std::uint64_t added_ = 0;
   StepReport report_;
+  std::optional<std::string> lost_;  ///< Why the hand lost what it held.
 };
 
 }  // namespace hooke::app

@@ -122,8 +122,9 @@ Result<SceneDocument> document_of_model(const std::string& file, const ImportOpt
   Scene scene;
   const std::filesystem::path path = file;
   scene.title = path.filename().string();
-  // Paths of meshes are relative to the scene, so that the scene gets a path beside the model.
-  scene.path = (path.parent_path() / "model.json").string();
+  // Paths of meshes are relative to the scene, so that the scene gets a path beside the model. It keeps the
+  // ending, so that what is saved beside it overwrites nothing of another model or scene.
+  scene.path = file + ".json";
   scene.meshes.push_back({.name = kName, .file = path.filename().string(), .import = options});
   scene.materials.push_back({.name = "ground", .color = {0.13F, 0.16F, 0.14F}});
   scene.objects.bodies.push_back({.tag = {.name = "ground", .material = "ground"}});

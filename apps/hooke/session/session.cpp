@@ -89,12 +89,10 @@ std::vector<ListedObject> list_of(const Simulation& simulation) {
 }  // namespace
 
 Session::Session(std::string file, Loader loader, const SessionOptions& options)
-    : file_(std::move(file)),
-      loader_(std::move(loader)),
-      options_(options),
-      view_(std::make_shared<const SessionView>()) {
+    : file_(std::move(file)), loader_(std::move(loader)), options_(options) {
   state_.playing = options.playing;
   state_.timeline_budget = options.timeline_budget;
+  view_ = std::make_shared<const SessionView>(state_);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -137,11 +135,12 @@ void Session::run() {
 }
 
 Session::LivePtr Session::build(SharedDocument document) {
+  // The command is not done, so that all but the progress is as others saw it last.
+  SessionView shown = *view();
   Loaded<Simulation> built = loader_.build(document->scene, [&](const std::string& text) {
-    state_.progress = text;
-    publish(state_);
+    shown.progress = text;
+    publish(shown);
   });
-  state_.progress.clear();
   state_.errors = std::move(built.errors);
   if (!built) return nullptr;
   return std::make_unique<LiveScene>(std::move(*built.value), options_.timeline_budget, std::move(document));
@@ -183,7 +182,7 @@ void Session::take(LivePtr live) {
   state_.step_ms = 0;
   state_.problem.clear();
   state_.warnings.clear();
-  state_.listed = nullptr;
+  listed_anew_ = true;
   due_ = WallClock::now();
 }
 
@@ -203,12 +202,10 @@ void Session::replace(LivePtr live) {
 void Session::play() {
   for (;;) {
     const std::vector<Command> commands = wait();
-    {
-      const std::lock_guard lock(mutex_);
-      if (ends_) return;
-    }
-    if (!commands.empty()) state_.listed = nullptr;
+    if (is_ending()) return;
+    if (!commands.empty()) listed_anew_ = true;
     for (std::size_t i = 0; i < commands.size(); ++i) {
+      if (is_ending()) return;
       ++state_.commands;
       if (i + 1 < commands.size() && replaces(commands[i + 1], commands[i])) continue;
       obey(commands[i]);
@@ -227,6 +224,11 @@ std::vector<Command> Session::wait() {
                                 std::make_move_iterator(queue_.end()));
   queue_.clear();
   return commands;
+}
+
+bool Session::is_ending() const {
+  const std::lock_guard lock(mutex_);
+  return ends_;
 }
 
 bool Session::look_at_file() {
@@ -268,18 +270,19 @@ void Session::obey(const Play& play) {
 
 void Session::obey(const MakeSteps& steps) {
   state_.playing = false;
-  for (int i = 0; i < steps.count; ++i) step();
+  for (int i = 0; i < steps.count && !is_ending(); ++i) step();
 }
 
 void Session::obey(const SetSpeed& speed) {
-  state_.speed = std::clamp(speed.speed, 1e-3, 16.0);
+  state_.speed = std::clamp(speed.speed, kLeastSpeed, kMostSpeed);
   due_ = WallClock::now();
 }
 
 void Session::obey(const Seek& seek) {
   state_.playing = false;
-  live_->seek(seek.step);
-  state_.problem.clear();
+  const Result<void> done = live_->seek(seek.step, [this] { return is_ending(); });
+  (void)live_->take_lost();  // It was said when it happened first.
+  state_.problem = done ? "" : to_line(done.error());
 }
 
 /// Goes on with the last of `from`, and keeps what was there in `to`.
@@ -304,6 +307,7 @@ void Session::obey(const Redo& /*redo*/) {
 
 void Session::obey(const Restart& /*restart*/) {
   live_->restart();
+  trouble_watch_.emplace(live_->simulation());
   state_.problem.clear();
 }
 
@@ -411,6 +415,7 @@ void Session::obey(const SaveFigures& /*save*/) {
 void Session::step() {
   const auto start = WallClock::now();
   const Result<void> done = live_->step();
+  if (std::optional<std::string> lost = live_->take_lost()) say({false, *std::move(lost)});
   smooth(state_.step_ms, std::chrono::duration<double, std::milli>(WallClock::now() - start).count());
   if (done) {
     trouble_watch_->look(live_->simulation(), live_->report());
@@ -465,7 +470,8 @@ void Session::publish() {
   state_.redo_count = live_->redo_count() + future_.size();
   state_.document = live_->document();
   state_.edited = saved_ != live_->document();
-  if (!state_.listed || state_.listed->size() != simulation.objects().size())
+  const bool has_changed = std::exchange(listed_anew_, false) || !state_.listed;
+  if (has_changed || state_.listed->size() != simulation.objects().size())
     state_.listed = std::make_shared<const std::vector<ListedObject>>(list_of(simulation));
   state_.troubles.clear();
   for (const RunWarning& warning : trouble_watch_->warnings()) state_.troubles.push_back(warning.line());

@@ -35,7 +35,10 @@ struct Play {
 struct MakeSteps {
   int count = 1;
 };
-/// Changes how fast time passes; 1 is real time.
+/// How slow and how fast time may pass.
+inline constexpr double kLeastSpeed = 1e-3;
+inline constexpr double kMostSpeed = 16;
+/// Changes how fast time passes; 1 is real time. A speed beyond kLeastSpeed or kMostSpeed counts as that.
 struct SetSpeed {
   double speed = 1;
 };
@@ -158,12 +161,13 @@ struct SessionOptions {
 };
 
 /// Runs a simulation on a thread of its own, which loads it, steps it in real time and does what it is told.
-/// All calls return at once, whatever the thread is busy with.
+/// All calls but wait_for return at once, whatever the thread is busy with.
 class Session {
  public:
   /// `file` is the scene or model to open; it is read again whenever it is saved.
   Session(std::string file, Loader loader, const SessionOptions& options);
-  /// Waits for the step that runs.
+  /// Waits for the command or the step that runs; a scene that loads is loaded to its end. Commands that were
+  /// not begun are not done.
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -211,6 +215,8 @@ class Session {
   void say(Outcome outcome);
   void replace(LivePtr live);
   void step();
+  /// Whether the session is about to end.
+  [[nodiscard]] bool is_ending() const;
   /// Measures the world and the selected object.
   void measure_all();
   /// Returns whether it made a step, or stopped for good.
@@ -233,6 +239,7 @@ class Session {
   InsightWish wish_;
   InsightMaker insight_;
   double shown_time_ = 0;      ///< Time of the last view [s].
+  bool listed_anew_ = true;    ///< Whether commands may have changed the list of objects.
   SessionView state_;          ///< The next view, but for what follows from the scene.
   WallClock::time_point due_;  ///< When the next step is due.
 

@@ -28,10 +28,13 @@ void Timeline::add(Moment moment) {
 
 void Timeline::thin_out() {
   const std::size_t before = moments_.size();
+  // Zero is a multiple of every interval: of the moments at the start only the first one stays for good.
+  const std::uint64_t start = moments_.front().step;
   const auto goes = [&](const Moment& moment) {
     const bool is_first = &moment == moments_.data();
     const bool is_last = &moment == &moments_.back();
-    return !is_first && !is_last && !is_for_undo(moment) && moment.step % (2 * interval_) != 0;
+    const bool is_between = moment.step == start || moment.step % (2 * interval_) != 0;
+    return !is_first && !is_last && !is_for_undo(moment) && is_between;
   };
   std::vector<Moment> kept;
   for (Moment& moment : moments_) {

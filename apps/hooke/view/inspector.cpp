@@ -197,6 +197,7 @@ void Inspector::build_selected(const SessionView& view, ViewInput& input, Widget
       build_keys(view, "world", input, boxes);
     return;
   }
+  if (!view.listed) return;
   const auto found = std::find_if(view.listed->begin(), view.listed->end(),
                                   [&](const ListedObject& object) { return object.name == view.selected; });
   if (found == view.listed->end()) return;
@@ -281,10 +282,8 @@ unsigned Inspector::find_picture(const std::string& file) {
   if (!is_new) return found->second.name();
   const auto image = render::load_image(file);
   if (!image) return 0;
-  GLuint texture = 0;
-  glGenTextures(1, &texture);
-  found->second = render::GlName(texture, [](GLuint name) { glDeleteTextures(1, &name); });
-  glBindTexture(GL_TEXTURE_2D, texture);
+  found->second = render::make_texture();
+  glBindTexture(GL_TEXTURE_2D, found->second.name());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -292,7 +291,7 @@ unsigned Inspector::find_picture(const std::string& file) {
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, image.value().width, image.value().height, 0, format,
                GL_UNSIGNED_BYTE, image.value().pixels.data());
   glBindTexture(GL_TEXTURE_2D, 0);
-  return texture;
+  return found->second.name();
 }
 
 void Inspector::build_scenes(const SessionView& view, ViewInput& input, WidgetBoxes& boxes) {

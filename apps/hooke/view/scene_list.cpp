@@ -50,7 +50,7 @@ const char* title_of(const Scene& scene, bool is_of_paper) {
 
 /// The small picture that the gallery has of a scene: docs/gallery/paper_fig2.jpg for scenes/paper/fig2.json.
 std::string picture_of(const fs::path& root, const fs::path& file) {
-  std::string name = fs::relative(file, root).replace_extension("").generic_string();
+  std::string name = file.lexically_relative(root).replace_extension("").generic_string();
   std::replace(name.begin(), name.end(), '/', '_');
   const fs::path picture = root.parent_path() / "docs" / "gallery" / (name + ".jpg");
   std::error_code failed;
@@ -60,8 +60,8 @@ std::string picture_of(const fs::path& root, const fs::path& file) {
 std::vector<fs::path> files_of(const fs::path& root) {
   std::vector<fs::path> files;
   std::error_code failed;
-  for (fs::recursive_directory_iterator i(root, failed); !failed && i != fs::recursive_directory_iterator();
-       i.increment(failed)) {
+  for (fs::recursive_directory_iterator i(root, fs::directory_options::skip_permission_denied, failed);
+       !failed && i != fs::recursive_directory_iterator(); i.increment(failed)) {
     if (i.depth() >= 1) i.disable_recursion_pending();
     const bool is_listed = is_scene(i->path()) || is_model_file(i->path().string());
     if (is_listed && i->is_regular_file(failed)) files.push_back(i->path());

@@ -27,7 +27,7 @@ struct SceneGroup {
 /// come first. It reads them on a thread of its own, because a hundred take longer than a picture.
 class SceneList {
  public:
-  /// Starts to read the folder of a scene, or the one above it if that has scenes too.
+  /// Starts to read the folder of a scene; of a scene in a subfolder of a folder "scenes", that folder.
   explicit SceneList(std::string file);
   /// Stops reading.
   ~SceneList();

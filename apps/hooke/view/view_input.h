@@ -87,7 +87,7 @@ class ViewInput {
   /// Number of the last command.
   [[nodiscard]] std::uint64_t posted() const { return posted_; }
   /// Gives a command that comes from a button of the window.
-  void post(Command command) { posted_ = session_.post(std::move(command)); }
+  void post(Command command);
 
   /// The page of keys.
   [[nodiscard]] static std::span<const KeyHelp> help();
@@ -112,7 +112,7 @@ class ViewInput {
   Session& session_;
   render::OrbitCamera& camera_;
   Eye eye_;
-  bool playing_ = false;
+  bool playing_ = false;  ///< Whether it plays once the commands so far are done; likewise the next two.
   double speed_ = 1;
   std::uint64_t step_ = 0;
   std::array<double, 2> mouse_ = {};
@@ -131,6 +131,8 @@ class ViewInput {
   float zoom_ = 1;
   bool wants_to_close_ = false;
   std::uint64_t posted_ = 0;
+  /// Number of the last command that may play, pause or go to another step: none that moves the hand.
+  std::uint64_t awaited_ = 0;
 };
 
 }  // namespace hooke::app
