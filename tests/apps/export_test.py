@@ -185,6 +185,7 @@ class Files(Export):
             self.assertAlmostEqual(got, wanted, places=5)
         self.assertAlmostEqual(glass["pbrMetallicRoughness"]["roughnessFactor"], (2 / 202) ** 0.25, places=5)
         self.assertTrue(materials["cloth"]["doubleSided"])
+        self.assertEqual(materials["iron"]["pbrMetallicRoughness"]["metallicFactor"], 1)
         image = glb.json["images"][0]
         view = glb.json["bufferViews"][image["bufferView"]]
         begin = view["byteOffset"]
@@ -421,6 +422,32 @@ class Files(Export):
         for frame in (0, 15, 30):
             for name, node in glb.roots().items():
                 self.assert_near(glb.vertices(node, frame / 30), self.frame(frame)[name], TOLERANCE + ROUNDING, name)
+
+    def test_a_body_that_yields_shows_its_dent(self):
+        tin = {"impulse": 100, "cell": 0.1, "young_modulus": 1e7, "damping": 0.02, "yield_stress": 30000,
+               "freeze_below": 2, "freeze_after": 0.05}
+        scene = FALL | {"seconds": 1, "bodies": [
+            {"name": "ground", "shape": {"half_space": {}}},
+            {"name": "tin", "kind": "dynamic", "shape": {"box": {"half_extents": [0.3, 0.1, 0.3]}}, "density": 1000,
+             "position": [0, 0.1, 0], "yields": tin},
+            {"name": "lid", "kind": "dynamic", "shape": {"box": {"half_extents": [0.1, 0.1, 0.1]}}, "density": 100,
+             "position": [0.41, 0.1, 0]},
+            {"name": "weight", "kind": "dynamic", "shape": {"sphere": {"radius": 0.15}}, "density": 7800,
+             "position": [0, 0.6, 0], "velocity": [0, -8, 0]}],
+            "hooks": [{"name": "hinge", "kind": "hinge", "a": "tin", "b": "lid", "anchor": [0.3, 0.1, 0],
+                       "axis": [0, 0, 1]}]}
+        self.export("seq/frame_%04d.obj", scene=scene)
+        _, err = self.export("x.glb", scene=scene)
+        self.assertIn("1 hooks of bodies with 'yields' are no joints", err)
+        first, last = self.frame(0)["tin"], self.frame(30)["tin"]
+        turned = [distance(a, b) - distance(c, d) for a, b, c, d in zip(first, first[1:], last, last[1:])]
+        self.assertGreater(max(map(abs, turned)), 0.01)  # A rigid motion keeps distances.
+        glb = Glb(self.folder / "x.glb")
+        for frame in (0, 10, 30):
+            self.assert_near(glb.vertices(glb.roots()["tin"], frame / 30), self.frame(frame)["tin"],
+                             TOLERANCE + ROUNDING, f"frame {frame}")
+        self.export("x.csv", scene=scene)
+        self.assertAlmostEqual(float(table(self.folder / "x.csv")["tin", "", 0]["y_m"]), 0.1, places=6)
 
     def test_an_obj_sequence_names_its_materials_and_frames(self):
         self.export("seq/frame_%04d.obj", "--seconds", 0.1)

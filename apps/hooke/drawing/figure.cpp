@@ -20,10 +20,8 @@ constexpr float kLeastRopeRadius = 1.2F;  ///< Half the least width of a rope [p
 /// Spheres with a radius above the first [px] are drawn by the finest level, smaller ones by the next, and
 /// below the second by the coarsest. None is more than half a pixel off.
 constexpr std::array<float, 2> kLevelRadius = {40, 10};
-constexpr float kIronDensity = 7800;   ///< [kg/m^3]
+constexpr float kIronDensity = 7850;   ///< That of the library's steel [kg/m^3].
 constexpr float kHookRadius = 0.008F;  ///< Radius of the line that shows a distance hook [m].
-const render::Color kIron = {0.56F, 0.57F, 0.58F};
-const render::Surface kIronSurface = {render::Shading::kSolid, 1, 0.5F, 0, 0, 0, 1};
 
 float srgb_of(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
@@ -341,7 +339,8 @@ void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& 
 void add_loads(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
   for (const FigureLoad& load : figure.loads) {
     if (load.point < place.points.size())
-      list.spheres.push_back({place.points[load.point], load.radius, kIron, kIronSurface});
+      list.spheres.push_back({place.points[load.point], load.radius, iron_finish().color,
+                              surface_of(iron_finish(), render::Shading::kSolid)});
   }
 }
 
@@ -373,6 +372,11 @@ void add_particles(const Figure& figure, const FigurePlace& place, render::DrawL
 }
 
 }  // namespace
+
+const Finish& iron_finish() {
+  static const Finish iron = {.color = {0.56F, 0.57F, 0.58F}, .metalness = 1, .roughness = 0.5F};
+  return iron;
+}
 
 render::Color srgb_color_of(const std::array<float, 3>& linear) {
   return {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])};
@@ -408,6 +412,13 @@ Figure make_figure(const Simulation& simulation, const SceneObject& object, cons
   if (object.kind == SceneObject::Kind::kCloth) prepare_cloth(simulation, object, figure);
   if (object.kind == SceneObject::Kind::kSolid) prepare_solid(simulation, object, figure);
   prepare_points(simulation, object, figure);
+  return figure;
+}
+
+Figure make_reshaped_figure(const Simulation& simulation, const SceneObject& object,
+                            const TextureLoader& textures) {
+  Figure figure;
+  prepare_reshaped(simulation, object, textures, figure);
   return figure;
 }
 

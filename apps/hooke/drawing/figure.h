@@ -34,6 +34,9 @@ struct Finish {
   bool hair = false;                                  ///< Whether ropes are tufts of hair.
 };
 
+/// Returns the finish of loads.
+const Finish& iron_finish();
+
 /// These are consecutive triangles with one finish.
 struct PaintedRange {
   std::size_t first = 0;
@@ -90,6 +93,10 @@ ObjectKey key_of(const SceneObject& object);
 /// Prepares everything about an object of a simulation that does not change.
 Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
                    BodyGeometries& geometries);
+
+/// Prepares a body with BodyDesc::yields by its surface, as it is drawn once it has a dent; it may have none.
+Figure make_reshaped_figure(const Simulation& simulation, const SceneObject& object,
+                            const TextureLoader& textures);
 
 /// Returns the sRGB color of a linear one.
 render::Color srgb_color_of(const std::array<float, 3>& linear);

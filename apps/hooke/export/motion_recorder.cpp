@@ -19,7 +19,6 @@ namespace {
 constexpr float kGroundSize = 50;   ///< Half the side of the square that shows a half-space [m].
 constexpr std::size_t kCrowd = 64;  ///< Number of bodies beyond which balls have 320 triangles, not 5120.
 constexpr float kRadians = std::numbers::pi_v<float> / 180;  ///< Of a degree.
-const Finish kIron = {.color = {0.30F, 0.31F, 0.33F}};
 
 using Kind = SceneObject::Kind;
 
@@ -79,6 +78,10 @@ bool MotionRecorder::is_recorded(const SceneObject& object) const {
   return object.kind != Kind::kField;
 }
 
+bool MotionRecorder::has_dents(const World& world, const SceneObject& object) const {
+  return detail_ == Detail::kSkins && object.kind == Kind::kBody && !world.triangles(object.body).empty();
+}
+
 MotionRecorder::Taken MotionRecorder::taken(const World& world, const SceneObject& object) const {
   Taken now;
   now.key = key_of(object);
@@ -89,6 +92,7 @@ MotionRecorder::Taken MotionRecorder::taken(const World& world, const SceneObjec
                  .velocity = world.velocity(object.body),
                  .angular_velocity = world.angular_velocity(object.body),
                  .energy = world.energy(object.body)};
+    if (has_dents(world, object)) now.points = world.surface(object.body);
     return now;
   }
   if (object.kind == Kind::kHook) {
@@ -138,7 +142,7 @@ Result<void> MotionRecorder::record(const Simulation& simulation, double time) {
     if (!entry) return entry.error();
     if (entry.value() == nullptr) continue;
     const MotionState state = mix(from.state, now.state, part);
-    if (object.kind == Kind::kBody) {
+    if (object.kind == Kind::kBody && !entry.value()->skin) {
       motion_.set_state(entry.value()->object, state);
     } else if (entry.value()->skin) {
       motion_.set_points(entry.value()->object, state, entry.value()->skin->vertices(points));
@@ -161,8 +165,12 @@ Result<MotionRecorder::Entry*> MotionRecorder::find_entry(const Simulation& simu
   const auto load = [this](const std::string& path, const ImageBytes& bytes, ImageUse use) {
     return looks_.load(path, bytes, use);
   };
-  const Figure figure = make_figure(simulation, object, load, geometries_);
-  if (object.kind == Kind::kBody) {
+  const bool yields = has_dents(simulation.world(), object);
+  const Figure figure = yields ? make_reshaped_figure(simulation, object, load)
+                               : make_figure(simulation, object, load, geometries_);
+  if (yields) {
+    yielding_.insert(object.name);
+  } else if (object.kind == Kind::kBody) {
     const auto added = add_body(simulation, object, figure);
     if (!added) return added.error();
     if (!has_joints_) bodies_[object.name] = added.value();
@@ -187,7 +195,7 @@ Result<MotionRecorder::Entry> MotionRecorder::add_points(const SceneObject& obje
     for (const PaintedRange& range : figure.ranges) {
       materials.push_back(looks_.find(motion_, range.finish, object.material, is_sheet));
     }
-    const std::uint32_t iron = figure.loads.empty() ? 0 : looks_.find(motion_, kIron, "iron", false);
+    const std::uint32_t iron = figure.loads.empty() ? 0 : looks_.find(motion_, iron_finish(), "iron", false);
     entry.skin.emplace(figure, now.points, materials, iron);
     mesh = entry.skin->mesh();
   } else {
@@ -334,6 +342,7 @@ Result<void> MotionRecorder::add_joints(const Simulation& simulation) {
       if (body != bodies_.end()) end = body->second;
       return name.empty() || end.has_value();
     };
+    if (yielding_.contains(object.hooked[0]) || yielding_.contains(object.hooked[1])) ++lost_joints_;
     // A hook at a point of a rope or cloth is no joint of two bodies.
     const bool holds_bodies = end_of(object.hooked[0], joint.a) && end_of(object.hooked[1], joint.b);
     if (!holds_bodies || desc == nullptr) continue;
@@ -352,6 +361,10 @@ std::vector<std::string> MotionRecorder::warnings() const {
   std::vector<std::string> lines = looks_.warnings();
   for (const std::string& name : names_) {
     lines.push_back("'" + name + "' is left out, as it has nothing that could be drawn");
+  }
+  if (lost_joints_ > 0) {
+    lines.push_back(std::to_string(lost_joints_) +
+                    " hooks of bodies with 'yields' are no joints: such bodies are recorded as what deforms");
   }
   return lines;
 }

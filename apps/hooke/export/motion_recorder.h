@@ -7,9 +7,11 @@
 #include "hooke/motion_io.h"
 #include "hooke/scene_io.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -59,6 +61,8 @@ class MotionRecorder {
   };
 
   [[nodiscard]] bool is_recorded(const SceneObject& object) const;
+  /// Tells whether an object is a body that may get dents, which is recorded by its surface.
+  [[nodiscard]] bool has_dents(const World& world, const SceneObject& object) const;
   [[nodiscard]] Taken taken(const World& world, const SceneObject& object) const;
   /// Returns null for an object that cannot be seen.
   Result<Entry*> find_entry(const Simulation& simulation, const SceneObject& object, const Taken& now);
@@ -79,6 +83,8 @@ class MotionRecorder {
   /// Meshes of bodies by what they are made of.
   std::map<std::tuple<const void*, float, float, float, std::vector<std::uint32_t>>, std::uint32_t> meshes_;
   std::vector<std::string> names_;  ///< Names of objects that have nothing to show.
+  std::set<std::string> yielding_;  ///< Names of bodies that are recorded by their surfaces.
+  std::size_t lost_joints_ = 0;     ///< Number of hooks of those.
   bool has_joints_ = false;
   bool is_crowded_ = false;  ///< Whether there are so many bodies that balls have fewer triangles.
   State previous_;
