@@ -70,7 +70,8 @@ struct MotionLight {
   /// Luminance of a white matte surface that faces it, of a point and a spot at 1 m, from where it falls off
   /// by the square [cd/m^2]. 1 is the white of a screen that shows light as it is. Not negative.
   float strength = 1.0f;
-  float inner_angle = 0.35f;  ///< Half angle of a spot within which it is as bright as its middle [rad].
+  /// Half angle of a spot within which it is as bright as its middle [rad]. [0, outer_angle)
+  float inner_angle = 0.35f;
   float outer_angle = 0.52f;  ///< Half angle beyond which there is none. (inner_angle, pi / 2]
   bool shadows = true;        ///< Whether things keep its light from one another; only .usda tells it.
 };
@@ -163,7 +164,8 @@ class MotionRecording {
   /// Sets the luminance of the sky, red, green and blue, which lights from all sides [cd/m^2]. Only .usda has
   /// it. Errors: a number that is negative or not finite.
   Result<void> set_sky(std::array<float, 3> luminance);
-  /// Adds a material and returns its number.
+  /// Adds a material and returns its number. Its numbers are not checked: with one that is out of range or
+  /// not finite, other programs may refuse the file.
   std::uint32_t add_material(MotionMaterial material);
   /// Adds a mesh and returns its number. Errors: an index, a part or a material out of range,
   /// vertices that are not in the order of the parts, a coordinate that is not finite. A mesh may have points

@@ -230,6 +230,8 @@ TEST_SUITE("io/motion") {
     CHECK_FALSE(motion.add_light({.direction = {}}));
     CHECK_FALSE(motion.add_light({.position = {0, static_cast<double>(kNaN), 0}}));
     CHECK_FALSE(motion.add_light({.color = {1, -1, 1}}));
+    CHECK_FALSE(motion.add_light({.color = {1, 1.5F, 1}}));
+    CHECK_FALSE(motion.add_light({.color = {kNaN, 1, 1}}));
     CHECK_FALSE(motion.add_light({.strength = -1}));
     CHECK_FALSE(motion.add_light({.kind = Kind::kSpot, .inner_angle = 0.5F, .outer_angle = 0.5F}));
     CHECK_FALSE(motion.add_light({.kind = Kind::kSpot, .outer_angle = 1.6F}));

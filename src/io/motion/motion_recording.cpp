@@ -40,6 +40,10 @@ bool is_luminance(float value) {
   return std::isfinite(value) && value >= 0;
 }
 
+bool is_share(float value) {
+  return value >= 0 && value <= 1;
+}
+
 /// Returns what is wrong with a mesh, or an empty text.
 std::string fault_of(const MotionMesh& mesh, std::size_t materials) {
   if (mesh.indices.empty() && mesh.parts.empty()) return "";
@@ -188,12 +192,12 @@ Result<void> MotionRecording::add_light(MotionLight light) {
   const bool is_spot = light.kind == MotionLight::Kind::kSpot;
   const bool is_cone = light.inner_angle >= 0 && light.inner_angle < light.outer_angle &&
                        light.outer_angle <= std::numbers::pi_v<float> / 2;
-  const bool is_color = std::all_of(light.color.begin(), light.color.end(), is_luminance);
+  const bool is_color = std::all_of(light.color.begin(), light.color.end(), is_share);
   if (!finite(light.position) || !finite(direction) || length(direction) == 0 || !is_color ||
       !is_luminance(light.strength) || (is_spot && !is_cone)) {
     return Error{
         ErrorCode::kOutOfRange, "light '" + light.name + "'",
-        "needs a finite position, a direction that is not zero, a color and a strength of 0 or more, "
+        "needs a finite position, a direction that is not zero, colors in [0, 1], a strength of 0 or more, "
         "and 0 <= inner_angle < outer_angle <= pi / 2"};
   }
   data_->lights.push_back(std::move(light));
