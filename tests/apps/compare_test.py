@@ -85,6 +85,15 @@ class Compare(Program):
             self.assertEqual(float(rows[stepper]["order_theory"]), order)
         self.assertEqual([round(float(rows[s]["evaluations_per_s"]), -1) for s in ("euler", "rk4")], [1000, 4000])
 
+    def test_a_scene_of_more_than_a_spring_has_no_closed_form(self):
+        solid = {"name": "jelly", "cells": [1, 1, 1], "size": [0.1, 0.1, 0.1], "position": [9, 9, 9]}
+        hook = {"name": "string", "kind": "distance", "b": "mass", "b_point": 1, "anchor": [0.1, 0.875, 0],
+                "anchor_b": [0, 0.875, 0], "limits": {"upper": 0.2}}
+        for more, is_exact in (({}, True), ({"solids": [solid]}, False), ({"hooks": [hook]}, False)):
+            self.compare(self.scene(OSCILLATOR | more), "--steppers", "rk4", "--seconds", 0.2)
+            page = (self.folder / "out" / "index.html").read_text()
+            self.assertEqual("the exact damped oscillator" in page, is_exact, more)
+
     def test_the_paper_diverges_where_theory_says(self):
         rows = self.compare(self.scene(stiff()), "--steppers", "euler,taylor2_paper,paper,verlet,rk4,solver")
         gone = {stepper for stepper, row in rows.items() if row["diverged_at_s"]}

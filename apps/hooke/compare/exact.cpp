@@ -31,7 +31,8 @@ double real(Real x) {
 std::optional<SpringPendulum> find_pendulum(const Stage& stage) {
   const SceneObjects& objects = stage.scene().objects;
   const bool alone = objects.bodies.empty() && objects.ropes.empty() && objects.cloths.empty() &&
-                     objects.fields.empty() && objects.particles.size() == 1;
+                     objects.fields.empty() && objects.solids.empty() && objects.hooks.empty() &&
+                     objects.particles.size() == 1;
   if (!alone) return std::nullopt;
   const SceneParticles& net = objects.particles.front();
   const ParticlesDesc& desc = net.desc;

@@ -105,11 +105,10 @@ constexpr std::array kOthers = {
         {"y' = y + h (f(y) + f(y'))/2", "1",
          "Half of explicit and half of implicit Euler, the trapezoidal rule: what one adds the other takes. "
          "It keeps an oscillation at any step, though not its frequency."}},
-    Entry{
-        "am3",
-        {"y' = y + h (5 f' + 8 f\u2080 \u2212 f\u208b\u2081)/12", "largest root of a square",
-         "A parabola through the unknown slope and the last two. It is of third order and stable for damped "
-         "motion, but lets undamped oscillations grow slowly."}},
+    Entry{"am3",
+          {"y' = y + h (5 f' + 8 f\u2080 \u2212 f\u208b\u2081)/12", "largest root of a square",
+           "A parabola through the unknown slope and the last two. It is of third order and stable for decay "
+           "up to h |\u03bb| = 6, but lets undamped oscillations grow slowly."}},
     Entry{"am4",
           {"y' = y + h (9 f' + 19 f\u2080 \u2212 5 f\u208b\u2081 + f\u208b\u2082)/24",
            "largest root of a cubic",

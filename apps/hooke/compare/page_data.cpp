@@ -170,12 +170,8 @@ Json method_json(const MethodGrowth& method, const char* color) {
     spans.push_back({shortened(span.imaginary), shortened(span.from), shortened(span.to)});
   Json result = {{"name", method.info.name},
                  {"color", color},
-                 {"order", method.info.order},
                  {"limit", shortened(method.info.imaginary_limit)},
-                 {"decay", shortened(method.info.real_limit)},
                  {"undamped", method.undamped ? shortened(*method.undamped) : Json(nullptr)},
-                 {"growth", method.worst ? Json(method.worst_growth) : Json(nullptr)},
-                 {"consequence", method.consequence},
                  {"curve", std::move(curve)},
                  {"spans", std::move(spans)}};
   return result;
@@ -192,9 +188,7 @@ Json stability_json(const Comparison& comparison) {
     while (number < comparison.trials.size() && comparison.trials[number].name != method.info.name) ++number;
     methods.push_back(method_json(method, color_of_run(number)));
   }
-  return {{"omega", shortened(system.omega)},
-          {"omega_dt", shortened(system.omega * comparison.dt)},
-          {"zeta", shortened(system.zeta)},
+  return {{"omega_dt", shortened(system.omega * comparison.dt)},
           {"z", std::move(z)},
           {"window",
            {{"left", StabilityWindow::kLeft},

@@ -383,8 +383,7 @@ Plot.count = 0;
 // Panels side by side, one for each run, all at the same time.
 class Panels {
   constructor(host, data, choice, onTime) {
-    Object.assign(this, {motion: data.motion, dt: data.dt, onTime, choice, index: 0, playing: false, speed: 1});
-    this.count = Math.max(...data.runs.map(run => run.frames.length), 1);
+    Object.assign(this, {motion: data.motion, onTime, choice, index: 0, playing: false, speed: 1});
     this.full = data.motion.count;
     this.addControls(host);
     const grid = node('div', {class: 'panels'}, host);
