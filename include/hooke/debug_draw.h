@@ -62,13 +62,13 @@ struct DebugDrawDesc {
   bool hooks = false;       ///< DebugSubject::kHooks.
   bool sleep = false;       ///< DebugSubject::kSleep.
   bool routes = false;      ///< DebugSubject::kRoutes.
-  /// Whether forces of contacts, speeds of bodies and the largest load of each object are written beside.
+  /// Whether forces of contacts and hooks, speeds, the largest load of each object and "asleep" are written.
   bool texts = false;
   double meters_per_newton = 1e-3;  ///< Length of the arrow of a force [m/N]. [0, 1e6]
   double seconds = 0.1;             ///< The arrow of a velocity is the way in this time [s]. [0, 1e6]
   double axis_length = 0.1;  ///< Length of the axes of hooks and of the normals of contacts [m]. [0, 1e6]
-  double full_tension = 0;   ///< Tension that is drawn in full red [N]; 0: the largest there is.
-  double full_strain = 0;    ///< Strain that is drawn in full red; 0: the largest there is.
+  double full_tension = 0;   ///< Tension of full red [N], not negative; 0: the largest there is.
+  double full_strain = 0;    ///< Strain of full red, not negative; 0: the largest there is.
 };
 
 /// What a debug picture has drawn: its legend.
@@ -87,7 +87,7 @@ struct DebugDrawLegend {
 
 /// A way of solving and its color, for a legend of DebugSubject::kRoutes.
 struct DebugRoute {
-  std::string_view name = {};  ///< As in src/solver/routes.h.
+  std::string_view name = {};  ///< As debug_routes_of_contacts and debug_routes_of_hooks list them.
   DebugColor color = {};       ///< Color of its lines.
 };
 

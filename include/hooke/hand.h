@@ -23,13 +23,13 @@ namespace hooke {
 struct HandDesc {
   Real frequency_hz = Real(4);   ///< Frequency of the held mass on the spring [Hz]. [0.1, 30]
   Real damping_ratio = Real(1);  ///< Damping of the spring; 1 is critical. [0, 10]
-  /// Largest force [N], positive, or kRigid for none. It holds for the mean over a step of what moves as in
+  /// Largest force [N], positive; kRigid for no limit. It holds for the mean over a step of what moves as in
   /// the step before. In a step in which what is held is torn away or stopped, the spring may exceed it.
   Real max_force = Real(1000);
-  /// Mass m that the spring is made for [kg], positive: by default that of the body or of the whole rope,
+  /// Mass m that the spring is made for [kg]. [1e-9, 1e12] By default that of the body or of the whole rope,
   /// cloth or solid. Give more for a light link of a heavy mechanism.
   std::optional<Real> mass = {};
-  /// How far a ray may pass beside ropes and particles and still grab them [m], not negative.
+  /// How far a ray may pass beside ropes and particles and still grab them [m]. [0, 1e6]
   Real margin = Real(0.02);
 };
 
@@ -65,7 +65,8 @@ class Hand {
   /// something: it lets go of what was removed from the World, or is gone after World::restore. Errors: a
   /// target beyond hooke/limits.h, and any call during a step.
   Result<bool> before_step(World& world, Real dt);
-  /// Lets go. What was held keeps its velocity, and so flies on. Returns whether anything was held.
+  /// Lets go. What was held keeps its velocity, and so flies on. Returns whether anything was held. Call it
+  /// between steps: during one the World refuses to remove the spring, which then stays for good.
   bool release(World& world);
 
   /// Whether it holds something, as far as it knows: see before_step.

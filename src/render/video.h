@@ -33,7 +33,9 @@ class VideoWriter {
   VideoWriter& operator=(VideoWriter&&) noexcept;
   ~VideoWriter();
 
-  /// Adds the next frame: RGB, of the film's size. After an Error every further call gives an Error.
+  /// Adds the next frame: RGB, of the film's size. A frame of another size is refused and may be followed by
+  /// others, as may a numbered picture that was not written; when ffmpeg has failed, every further call gives
+  /// an Error.
   Result<void> add(const Image& frame);
 
   /// Waits until the film is written and gives it its name. Call it once, last.

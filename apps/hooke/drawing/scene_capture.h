@@ -36,7 +36,8 @@ struct SceneState {
 };
 
 /// Copies what pictures show out of a simulation. It reads textures and prepares the look of each object
-/// once, and touches no figure after it has given it away.
+/// once, and of a figure that it has given away it reads only splits and reshaped, which who draws must not
+/// change.
 class SceneCapture {
  public:
   /// Draws the objects of these names in plain colors, in place of their own look.

@@ -33,7 +33,8 @@ struct InsightChoice {
 /// All of them, in the order of their keys in the window.
 [[nodiscard]] std::span<const InsightChoice> insight_choices();
 
-/// A debug picture as plain data, free of the world. Places are in the world [m].
+/// The debug picture of hooke/debug_draw.h as plain data, free of the world; users know it as insight (the
+/// window) and --show (pictures). Places are in the world [m].
 struct Insight {
   struct Line {
     DebugSubject subject = DebugSubject::kContacts;
