@@ -1,6 +1,7 @@
 #include "io/folder_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <system_error>
 
 namespace hooke::io {
@@ -18,6 +19,12 @@ Result<std::string> resolve_in_folder(const fs::path& folder, const std::string&
                  "a symbolic link out of its folder: name the file that it leads to"};
   }
   return file.string();
+}
+
+std::string lower_ending(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
 }
 
 }  // namespace hooke::io

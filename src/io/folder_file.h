@@ -13,4 +13,7 @@ namespace hooke::io {
 [[nodiscard]] Result<std::string> resolve_in_folder(const std::filesystem::path& folder,
                                                     const std::string& name);
 
+/// Returns the ending of a file with its point, in lower case: ".obj".
+[[nodiscard]] std::string lower_ending(const std::filesystem::path& path);
+
 }  // namespace hooke::io

@@ -100,6 +100,9 @@ class Export(Program):
                                          + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
     def export(self, output, *words, scene=None, code=0):
+        """`scene` is a scene, or the path of one, of which a second is exported."""
+        if isinstance(scene, pathlib.Path):
+            return self.hooke("export", scene, "-o", output, "--seconds", 1, *words, code=code)
         name = self.scene(MIXED if scene is None else scene)
         return self.hooke("export", name, "-o", output, *words, code=code)
 
@@ -604,12 +607,13 @@ class UsdReader(NodeReader):
 class Blender(Export):
     """Debian's blender, if it is installed."""
 
-    def compare(self, *scripts):
+    def compare(self, *scripts, scene=None):
         """Runs scripts that load a motion, and compares five frames with the .obj files."""
         blender = shutil.which("blender")
         if blender is None:
             self.skipTest("no blender: ./dev setup formats installs it")
-        self.export("seq/frame_%04d.obj")
+        shutil.rmtree(self.folder / "seq", ignore_errors=True)
+        self.export("seq/frame_%04d.obj", scene=scene)
         # Blender takes the libraries of the first python3 in PATH, and needs those of the system.
         plain = {**os.environ, "PATH": "/usr/local/bin:/usr/bin:/bin"}
         done = subprocess.run([blender, "--background", "--factory-startup", "--python-exit-code", "1", *scripts,
@@ -625,19 +629,35 @@ class Blender(Export):
         for frame, objects in frames.items():
             got = {file_name(name): points for name, points in objects.items()}
             for name, wanted in self.frame(int(frame)).items():
-                self.assert_near([[x, z, -y] for x, y, z in got[name]], wanted, TOLERANCE + ROUNDING,
-                                 f"{name} in frame {frame}")
+                points = [[x, z, -y] for x, y, z in got[name]]
+                if scene is not None and len(points) < 500:  # A body of several materials has them in another order.
+                    points = [min(points, key=lambda p, w=w: distance(p, w)) for w in wanted]
+                self.assert_near(points, wanted, TOLERANCE + ROUNDING, f"{name} in frame {frame}")
 
     def test_blender_plays_point_caches(self):
         self.export("caches/")
         self.compare("--python", self.folder / "caches/import_in_blender.py")
         self.assertTrue((self.folder / "x.blend").exists())
 
-    def test_blender_plays_tracks_and_morph_targets(self):
-        self.export("x.glb")
+    def compare_glb(self, scene=None):
+        self.export("x.glb", scene=scene)
         self.compare("--python-expr",
                      "import bpy, numpy; numpy.bool = bool; scene = bpy.context.scene; scene.render.fps = 30; "
-                     f"bpy.ops.import_scene.gltf(filepath={str(self.folder / 'x.glb')!r}); scene.frame_end = {FRAMES - 1}")
+                     f"bpy.ops.import_scene.gltf(filepath={str(self.folder / 'x.glb')!r}); scene.frame_end = {FRAMES - 1}",
+                     scene=scene)
+
+    def test_blender_plays_tracks_and_morph_targets(self):
+        self.compare_glb()
+
+    def test_blender_plays_five_scenes(self):
+        for name in ("showcase", "cape_and_runner", "jelly_on_posts", "rope_bridge", "dents"):
+            scene = cli_test.PROJECT / f"scenes/{name}.json"
+            with self.subTest(scene=name, form="glb"):
+                self.compare_glb(scene)
+            with self.subTest(scene=name, form="caches"):
+                shutil.rmtree(self.folder / "caches", ignore_errors=True)
+                self.export("caches/", scene=scene)
+                self.compare("--python", self.folder / "caches/import_in_blender.py", scene=scene)
 
 
 if __name__ == "__main__":

@@ -79,6 +79,43 @@ TEST_SUITE("session/view_input") {
     for (int i = 0; i < 40; ++i) input.key(Key::kSlower);
     CHECK(done()->speed == kLeastSpeed);
   }
+
+  TEST_CASE("edits that are not saved are not lost by one key") {
+    Session session("", {read, build}, {.playing = false});
+    render::OrbitCamera camera;
+    ViewInput input(session, camera);
+    const auto look = [&](bool edited) {
+      SessionView view = *session.view();
+      view.edited = edited;
+      input.look({}, view, {});
+    };
+    look(true);
+    input.key(Key::kClose);
+    CHECK_FALSE(input.wants_to_close());
+    CHECK(input.hint().find("not saved") != std::string_view::npos);
+    // Anything else takes it back.
+    look(true);
+    input.key(Key::kSlower);
+    CHECK(input.hint().empty());
+    input.key(Key::kQuit);
+    CHECK_FALSE(input.wants_to_close());
+    look(true);
+    input.key(Key::kQuit);
+    CHECK(input.wants_to_close());
+  }
+
+  TEST_CASE("without edits one key hides the page of keys, or closes the window") {
+    Session session("", {read, build}, {.playing = false});
+    render::OrbitCamera camera;
+    ViewInput input(session, camera);
+    input.look({}, *session.view(), {});
+    input.key(Key::kHelp);
+    input.key(Key::kClose);
+    CHECK_FALSE(input.shows_help());
+    CHECK_FALSE(input.wants_to_close());
+    input.key(Key::kClose);
+    CHECK(input.wants_to_close());
+  }
 }
 
 }  // namespace hooke::app

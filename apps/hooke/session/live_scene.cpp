@@ -333,6 +333,8 @@ Outcome LiveScene::pin_body(const Target& target) {
     if (!removed) return {false, to_line(removed.error())};
     return {true, "unpinned '" + target.name + "'"};
   }
+  if (simulation_.world().mass(target.body) == 0)
+    return {false, "'" + target.name + "' stands still or follows its motion in any case"};
   SceneHook hook;
   hook.name = new_name("pin");
   hook.desc.kind = HookKind::kFixed;

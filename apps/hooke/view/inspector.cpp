@@ -73,7 +73,7 @@ void show_measured(const std::vector<MeasuredValue>& values) {
       continue;
     }
     const std::string name = value.name.substr(0, value.name.size() - 2);
-    ImGui::Text("%-16s %8.3g %8.3g %8.3g %s", name.c_str(), value.value, values[i + 1].value,
+    ImGui::Text("%-16s%8.3g%8.3g%8.3g %s", name.c_str(), value.value, values[i + 1].value,
                 values[i + 2].value, value.unit.c_str());
     i += 2;
   }

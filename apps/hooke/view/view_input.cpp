@@ -49,7 +49,7 @@ constexpr ViewInput::KeyHelp kHelp[] = {
     {"Delete", "removes what is under the mouse"},
     {"G, J, K", "make a model that was opened by itself a rigid body, jelly, cloth; again: still"},
     {"?, F1", "shows and hides this page"},
-    {"Escape", "closes this page, or the window"},
+    {"Escape", "closes this page, or the window; twice if edits are not saved"},
 };
 
 /// By subject of insight_choices().
@@ -68,6 +68,8 @@ void ViewInput::look(const Eye& eye, const SessionView& view, std::array<double,
   const std::array<double, 2> motion = {mouse[0] - mouse_[0], mouse[1] - mouse_[1]};
   eye_ = eye;
   mouse_ = mouse;
+  edited_ = view.edited;
+  asks_to_close_ = asks_to_close_ && edited_;
   // A view that was made before the last command was done knows less than what was typed since.
   if (view.commands >= awaited_) {
     playing_ = view.playing;
@@ -119,6 +121,7 @@ void ViewInput::drag_on(std::array<double, 2> motion) {
 }
 
 void ViewInput::press(Button button) {
+  asks_to_close_ = false;
   if (drag_ != Drag::kNone) return;
   if (button == Button::kRight) drag_ = Drag::kTurn;
   if (button == Button::kMiddle) drag_ = Drag::kPan;
@@ -160,6 +163,7 @@ void ViewInput::key(Key key) {
   const Ray ray = ray_through(eye_, mouse_);
   const auto distance = static_cast<double>(camera_.distance);
   if (key != Key::kTie) first_end_.reset();
+  if (key != Key::kClose && key != Key::kQuit) asks_to_close_ = false;
   const bool had_knife = key != Key::kCut && std::exchange(has_knife_, false);
   if (had_knife && key == Key::kClose) return;
   switch (key) {
@@ -243,8 +247,11 @@ void ViewInput::window_key(Key key) {
       shows_help_ = !shows_help_;
       return;
     case Key::kClose:
-      wants_to_close_ = !shows_help_;
-      shows_help_ = false;
+      if (std::exchange(shows_help_, false)) return;
+      [[fallthrough]];
+    case Key::kQuit:
+      wants_to_close_ = !edited_ || asks_to_close_;
+      asks_to_close_ = true;
       return;
     default:
       return;
@@ -256,7 +263,8 @@ ViewInput::Key ViewInput::insight_key(std::size_t choice) {
 }
 
 std::string_view ViewInput::hint() const {
-  if (has_knife_) return "Drag a line across what is to be cut";
+  if (asks_to_close_) return "Edits are not saved. Escape again closes the window without them";
+  if (has_knife_) return "Drag a line across what is to be cut; C puts the knife away";
   return first_end_ ? "Point at the other end of the string and press H" : "";
 }
 

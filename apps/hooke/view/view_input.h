@@ -50,7 +50,8 @@ class ViewInput {
     kRoutes,
     kNumbers,
     kHelp,   ///< Shows and hides the page of keys.
-    kClose,  ///< Hides the page of keys, or closes the window.
+    kClose,  ///< Hides the page of keys, or closes the window; the second time if edits are not saved.
+    kQuit,   ///< Closes the window likewise, whatever it shows.
   };
   /// One key of the page of keys.
   struct KeyHelp {
@@ -129,6 +130,8 @@ class ViewInput {
   bool shows_help_ = false;
   bool shows_inspector_ = true;
   float zoom_ = 1;
+  bool edited_ = false;         ///< Whether edits are not saved.
+  bool asks_to_close_ = false;  ///< Whether it was said that they would be lost.
   bool wants_to_close_ = false;
   std::uint64_t posted_ = 0;
   /// Number of the last command that may play, pause or go to another step: none that moves the hand.

@@ -113,6 +113,16 @@ void build_cost(const PictureCost& pictures) {
     ImGui::Text("pictures %10.1f /s", rate);
 }
 
+/// Moves a panel back whose title was dragged out of the window, or is left outside of a smaller one.
+void keep_in_sight() {
+  const ImVec2 place = ImGui::GetWindowPos();
+  const ImVec2 size = ImGui::GetWindowSize();
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const ImVec2 kept = {std::max(std::min(place.x, screen.x - size.x), 0.0F),
+                       std::max(std::min(place.y, screen.y - ImGui::GetFrameHeight()), 0.0F)};
+  if (kept.x != place.x || kept.y != place.y) ImGui::SetWindowPos(kept);
+}
+
 double in_mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / (1 << 20);
 }
@@ -127,6 +137,7 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, const P
   ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, std::max(highest, 8 * ImGui::GetFontSize())});
   ImGui::SetNextWindowBgAlpha(0.82F);
   ImGui::Begin("Simulation", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav);
+  keep_in_sight();
   if (view.stage == SessionView::Stage::kLoading) {
     ImGui::Text("loading %s", view.progress.c_str());
     ImGui::End();

@@ -219,6 +219,7 @@ void wake_by_events(GLFWwindow* window) {
                         [](GLFWwindow* its, double, double) { window_of(its).pace.wake(WallClock::now()); });
   glfwSetWindowFocusCallback(window,
                              [](GLFWwindow* its, int) { window_of(its).pace.wake(WallClock::now()); });
+  glfwSetWindowCloseCallback(window, [](GLFWwindow* its) { window_of(its).pace.wake(WallClock::now()); });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* its) { window_of(its).pace.wake(WallClock::now()); });
   glfwSetFramebufferSizeCallback(
       window, [](GLFWwindow* its, int, int) { window_of(its).pace.wake(WallClock::now()); });
@@ -339,7 +340,8 @@ void handle_input(Window& window, GLFWwindow* handle) {
   for (const Key key : std::exchange(window.keys, {})) {
     if (!io.WantTextInput) window.input.key(key);
   }
-  if (window.input.wants_to_close()) glfwSetWindowShouldClose(handle, GLFW_TRUE);
+  if (glfwWindowShouldClose(handle) == GLFW_TRUE) window.input.key(Key::kQuit);
+  glfwSetWindowShouldClose(handle, GLFW_FALSE);
 }
 
 /// Marks the selected object, so that one finds in the picture what the list names.
@@ -436,7 +438,8 @@ Result<void> draw_picture(Window& window, render::Renderer& renderer, const rend
 Result<void> draw_when_due(Window& window, render::Renderer& renderer, const render::Context& context) {
   const WallClock::time_point now = WallClock::now();
   const std::shared_ptr<const SessionView> view = window.session.view();
-  const bool is_hidden = glfwGetWindowAttrib(context.window(), GLFW_ICONIFIED) == GLFW_TRUE;
+  const bool is_hidden = glfwGetWindowAttrib(context.window(), GLFW_ICONIFIED) == GLFW_TRUE &&
+                         glfwWindowShouldClose(context.window()) == GLFW_FALSE;
   if (view != window.view || view->playing) window.pace.wake(now);
   if (is_hidden || !window.pace.is_due(now)) {
     take_view(window);
@@ -501,7 +504,7 @@ Result<void> run_window(Session& session, const ViewOptions& options) {
   if (!interface.ready())
     return Error{ErrorCode::kUnsupported, "window", "the user interface does not start"};
 
-  while (glfwWindowShouldClose(handle) == GLFW_FALSE && !is_over(window, options)) {
+  while (!window.input.wants_to_close() && !is_over(window, options)) {
     glfwPollEvents();
     auto drawn = draw_when_due(window, renderer.value(), context.value());
     if (!drawn) return drawn;

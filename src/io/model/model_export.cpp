@@ -1,6 +1,7 @@
 #include "hooke/model_io.h"
 
 #include "base/float_environment.h"
+#include "io/folder_file.h"
 #include "io/model/model_flat.h"
 #include "io/model/model_write.h"
 #include "process/new_file.h"
@@ -116,9 +117,7 @@ Result<void> export_checked(const Model& given, const std::string& path) {
     return Error{sound.error().code, path, "the model cannot be written: " + sound.error().message};
   }
   const std::filesystem::path file(path);
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = io::lower_ending(file);
   if (ending == ".stl") return process::write_file(path, io::write_stl(given));
   if (ending != ".glb" && ending != ".3ds" && ending != ".obj")
     return Error{ErrorCode::kOutOfRange, path, "not one of .obj .stl .glb .3ds"};

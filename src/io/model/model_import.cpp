@@ -53,7 +53,7 @@ std::string find_image(const fs::path& folder, const std::string& name) {
 
 /// Looks for the files that materials name. What is not there is left out, and named.
 void find_textures(Model& model, const fs::path& path) {
-  const std::string ending = lower(path.extension().string());
+  const std::string ending = io::lower_ending(path);
   const auto find = [&](std::string& file, const ImageBytes& bytes) {
     if (file.empty() || bytes) return;
     std::string found = find_image(path.parent_path(), file);

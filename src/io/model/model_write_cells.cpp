@@ -1,11 +1,10 @@
 #include "hooke/model_io.h"
 
 #include "base/float_environment.h"
+#include "io/folder_file.h"
 #include "process/new_file.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
@@ -66,9 +65,7 @@ std::string write_cells(const Fracture& fracture, const std::string& library) {
 Result<void> export_cells(const Fracture& fracture, const std::string& path) {
   const base::FloatEnvironment environment;
   std::filesystem::path library(path);
-  std::string ending = library.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = io::lower_ending(library);
   if (ending != ".obj" || path.find('\0') != std::string::npos)
     return Error{ErrorCode::kOutOfRange, path, "cells are written as .obj, which has named objects"};
   library.replace_extension(".mtl");

@@ -1,7 +1,7 @@
+#include "io/folder_file.h"
 #include "io/motion/motion_data.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -117,8 +117,7 @@ MotionFormat motion_format(const std::string& path) {
   std::error_code code;
   if (!path.empty() && (path.back() == '/' || fs::is_directory(path, code)))
     return MotionFormat::kPointCaches;
-  std::string ending = fs::path(path).extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = io::lower_ending(path);
   if (ending == ".glb") return MotionFormat::kGlb;
   if (ending == ".usda") return MotionFormat::kUsda;
   if (ending == ".csv") return MotionFormat::kCsv;

@@ -1,6 +1,7 @@
 #include "hooke/scene_io.h"
 
 #include "base/float_environment.h"
+#include "io/folder_file.h"
 #include "io/scene/material_library.h"
 #include "io/scene/scene_check.h"
 #include "io/scene/scene_ignored.h"
@@ -130,6 +131,12 @@ Loaded<Scene> load_scene(const std::string& path) {
   const base::FloatEnvironment environment;
   std::error_code failure;
   const std::filesystem::path file(path);
+  for (const char* const model : {".3ds", ".obj", ".stl", ".ply", ".gltf", ".glb"}) {
+    if (io::lower_ending(file) == model) {
+      return io::unreadable(path, ErrorCode::kUnsupported,
+                            "is a model, no scene: `hooke view` shows it, and a scene names it in `meshes`");
+    }
+  }
   // Devices and pipes may never end.
   if (!std::filesystem::is_regular_file(file, failure)) {
     const bool there = std::filesystem::exists(file, failure);

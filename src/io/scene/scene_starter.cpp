@@ -57,7 +57,7 @@ constexpr const char* kRope = R"({
 
   "camera": {"eye": [0.5, 1.8, 4.5], "target": [0, 1.5, 0]},
 
-  // Figures that `hooke check` holds the scene to.
+  // Figures that `hooke run` holds the scene to.
   "expect": [
     {"quantity": "largest_stretch", "op": "<", "value": 0.01}
   ]
@@ -105,7 +105,7 @@ constexpr const char* kFlag = R"({
 
   "camera": {"eye": [0.8, 2, 4.5], "target": [0.6, 2, 0]},
 
-  // Figures that `hooke check` holds the scene to.
+  // Figures that `hooke run` holds the scene to.
   "expect": [
     {"quantity": "lowest", "of": "flag", "op": ">", "value": 0.5}
   ]

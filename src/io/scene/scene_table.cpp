@@ -561,7 +561,7 @@ template <>
 const Kind& kind_of<SceneExpectation>() {
   static const Kind kind = {
       .name = "expectation",
-      .help = "A figure that the scene promises: `hooke check` fails when it is missed.",
+      .help = "A figure that the scene promises: `hooke run` fails when it is missed.",
       .fields =
           {required(field<&SceneExpectation::quantity>("quantity", "", kAny, "What is measured.")),
            field<&SceneExpectation::of>("of", "", kNotEmpty, "Name of an object; the world without it."),
