@@ -344,6 +344,17 @@ class View(unittest.TestCase):
         self.assertEqual(saved, expected)
         self.end()
 
+    def test_the_panel_stays_while_the_scene_of_what_is_selected_is_built(self):
+        scene = pathlib.Path(self.folder.name) / "scene.json"
+        scene.write_text(SCENE.replace('"cells": [3, 3, 3]', '"cells": [14, 14, 14]'))
+        window = self.open("--paused")
+        window.click("object ball")
+        window.wait("it is selected", lambda s: s["selected"] == "ball")
+        state = window.enter("key bodies[1].mass", "5")
+        state = window.wait("it is built", lambda s: s["built"] == 2 and s["measured"])
+        self.assertAlmostEqual(state["measured"]["mass"], 5, places=5)
+        self.end()
+
     def test_a_saved_file_is_read_again_and_a_mistake_is_told(self):
         window = self.open("--paused")
         window.point((640, 60))
