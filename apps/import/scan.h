@@ -19,10 +19,10 @@ void scan_gltf(std::span<const std::byte> bytes);
 /// Checks the JSON in the first chunk of a .glb.
 void scan_glb(std::span<const std::byte> bytes);
 
-/// Checks the header of a .ply: that it ends, and promises no more than there is.
+/// Checks the header of a .ply: that it ends, promises no more than there is, and has faces, not strips.
 void scan_ply(std::span<const std::byte> bytes);
 
-/// Checks the faces of an .obj: each must have corners.
+/// Checks an .obj: it must be text of bytes, and its faces must have corners.
 void scan_obj(std::span<const std::byte> bytes);
 
 }  // namespace hooke::importer

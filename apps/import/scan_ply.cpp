@@ -67,7 +67,10 @@ class Header {
 
  private:
   void add_element(std::string_view line) {
-    (void)take_word(line);
+    // The importer would keep one triangle of all strips, and say nothing.
+    if (take_word(line) == "tristrips") {
+      throw Refusal(ImporterExit::kUnsupported, "strips of triangles are not read: save it with faces");
+    }
     const std::string_view number = take_word(line);
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), count_);
     if (error != std::errc() || end != number.data() + number.size()) {

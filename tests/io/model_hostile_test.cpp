@@ -158,6 +158,19 @@ TEST_SUITE("io/model_hostile") {
     CHECK(has_line(refused(folder.file("type.ply", head + "property real y\nend_header\n")), "type"));
   }
 
+  TEST_CASE("what the importer would lose without a word is refused with what helps") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    const std::string strips =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
+    CHECK(has_line(refused(folder.file("strips.ply", strips)), "save it with faces"));
+    std::string wide = "\xFE\xFF";
+    for (const char c : std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")) wide += std::string{'\0', c};
+    CHECK(has_line(refused(folder.file("wide.obj", wide)), "save it as UTF-8"));
+  }
+
   TEST_CASE("what is no regular file is not opened") {
     const auto importer = built_importer();
     const TemporaryFolder folder;
