@@ -1,10 +1,9 @@
 #include "geometry/solid/solid_cut.h"
 
-#include "math/trig.h"
+#include "geometry/solid/ray_winding.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace hooke::geometry {
@@ -96,18 +95,19 @@ DVec3 normal_of(const Corners& triangle) {
 }
 
 bool contains(std::span<const Corners> surface, DVec3 p) {
-  double half_angles = 0;
-  for (const Corners& t : surface) {
-    const DVec3 a = vector_cast<double>(t[0]) - p;
-    const DVec3 b = vector_cast<double>(t[1]) - p;
-    const DVec3 c = vector_cast<double>(t[2]) - p;
-    const double la = length(a);
-    const double lb = length(b);
-    const double lc = length(c);
-    half_angles +=
-        math::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  int winding = 0;
+  for (const Corners& corners : surface) {
+    const Box3<Real> box = box_of(corners[0], corners[1], corners[2]);
+    const bool is_beside = static_cast<double>(box.lower.z) > p.z || static_cast<double>(box.upper.z) < p.z ||
+                           static_cast<double>(box.upper.y) < p.y || static_cast<double>(box.lower.y) > p.y ||
+                           static_cast<double>(box.upper.x) < p.x;
+    if (is_beside) continue;
+    const std::array<DVec3, 3> t = {vector_cast<double>(corners[0]), vector_cast<double>(corners[1]),
+                                    vector_cast<double>(corners[2])};
+    const int sign = winding_about(t, p.y, p.z);
+    if (sign != 0 && crossing_of(t, p.y, p.z) > p.x) winding += sign;
   }
-  return half_angles > std::numbers::pi;
+  return winding > 0;
 }
 
 SolidHalves cut(const SolidPiece& piece, std::span<const Corners> solid, const Plane& plane,

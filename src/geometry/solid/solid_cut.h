@@ -30,8 +30,8 @@ struct SolidHalves {
   double cut_length = 0;  ///< Length of the curve in which the plane meets the surface [m].
 };
 
-/// Whether the point is inside the closed surface: whether the solid angle around it is full (Van Oosterom
-/// and Strackee 1983, The solid angle of a plane triangle). Either answer on the surface.
+/// Whether the point is inside the closed surface: how often that winds about a line along x from there on.
+/// Either answer on the surface.
 [[nodiscard]] bool contains(std::span<const Corners> surface, DVec3 p);
 
 /// The two sides of a plane of a piece of `solid`. Points at most `on_plane` [m] away from the plane count as

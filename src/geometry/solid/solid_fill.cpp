@@ -4,6 +4,7 @@
 #include "geometry/box.h"
 #include "geometry/mesh/bvh.h"
 #include "geometry/solid/cell_joining.h"
+#include "geometry/solid/ray_winding.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 
 #include <algorithm>
@@ -22,35 +23,10 @@ constexpr double kLeastVolume = 0.1;  ///< Least volume of a tetrahedron after i
                                       ///< before.
 
 /// The point where a line along x meets a triangle, and the sign of its winding about the line.
-struct Crossing {
+struct RayCrossing {
   double x = 0;
   int sign = 0;
 };
-
-/// Number of times that the triangle, seen along x, winds about (y, z). It is counted by its edges, each of
-/// them in one direction whichever triangle asks. So neighbors agree to the bit, and no line slips between
-/// them.
-int winding_about(const std::array<DVec3, 3>& t, double y, double z) {
-  int winding = 0;
-  for (int k = 0; k < 3; ++k) {
-    DVec3 a = t[k], b = t[(k + 1) % 3];
-    int sign = 1;
-    if (b.z < a.z || (b.z == a.z && b.y < a.y)) {
-      std::swap(a, b);
-      sign = -1;
-    }
-    if (!(a.z <= z) || b.z <= z) continue;
-    if (a.y + (z - a.z) / (b.z - a.z) * (b.y - a.y) > y) winding += sign;
-  }
-  return winding;
-}
-
-double crossing_of(const std::array<DVec3, 3>& t, double y, double z) {
-  const DVec3 n = cross(t[1] - t[0], t[2] - t[0]);
-  const double x = t[0].x - (n.y * (y - t[0].y) + n.z * (z - t[0].z)) / n.x;
-  const Box3<double> box = box_of(t[0], t[1], t[2]);
-  return x >= box.lower.x ? std::min(x, box.upper.x) : box.lower.x;
-}
 
 /// Fills half cells, by the winding number at their centers.
 class Filler {
@@ -102,7 +78,7 @@ class Filler {
     for (int i = 0; i < 2 * grid_.counts[0]; ++i) {
       const double x = grid_.corner.x + (i + 0.5) * 0.5 * grid_.cell.x;
       int winding = 0;
-      for (const Crossing& c : ray) winding += c.x > x ? c.sign : 0;
+      for (const RayCrossing& c : ray) winding += c.x > x ? c.sign : 0;
       if (winding > 0) ++inside[grid_.index(i / 2, row / 2, layer / 2)];
     }
   }
@@ -110,7 +86,7 @@ class Filler {
   const MeshDesc& mesh_;
   CellGrid& grid_;
   int rows_, layers_;
-  std::vector<std::vector<Crossing>> rays_;
+  std::vector<std::vector<RayCrossing>> rays_;
 };
 
 /// Moves points of the surface to the nearest points of the mesh, or part of that distance.
