@@ -124,8 +124,10 @@ void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing,
   solver::prepare_stiff_rows(tables, system);
   solver::prepare_ties(tables, system);
   bool is_last = false;
+  bool is_new = true;
   for (int round = 1;; ++round) {
-    solver::solve_for_change(tables.particles, system, pass);
+    if (is_new) solver::begin_directions(tables.particles, system, pass);
+    solver::follow_directions(system, pass);
     for (solver::TetrahedronBlocks* part : system.parts) solver::find_pressed_impulses(*part);
     if (is_last || round == 2 * solver::kMostPressedRounds) break;
     // Where directions run out, contacts that pull or rub too hard are let go once more.
@@ -136,6 +138,7 @@ void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing,
     for (solver::TetrahedronBlocks* part : system.parts)
       any = solver::renew_pressed_points(pressing, tables, h, may_hold, *part) || any;
     if (!solver::sharpen(system) && !any) break;
+    is_new = any;  // Otherwise directions go on from where they were.
   }
   for (solver::TetrahedronBlocks* part : system.parts)
     solver::finish_stiff_solution(solver::is_solved(system), *part, tables.particles);

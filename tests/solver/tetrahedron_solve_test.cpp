@@ -30,7 +30,8 @@ struct Jelly {
     TetrahedronBlocks* const part[] = {&rows};
     StiffSystem system = {.parts = part, .rows = {}, .ties = {}};
     while (sharpen(system)) continue;
-    solve_for_change(particles, system, pass);
+    begin_directions(particles, system, pass);
+    follow_directions(system, pass);
     finish_stiff_solution(is_solved(system), rows, particles);
   }
 

@@ -47,19 +47,27 @@ void aim(const state::Particles& particles, StiffSystem& system);
 /// Goes along the direction as far as its image says, and finds the next one.
 void advance(StiffSystem& system);
 
-/// Finds the change for the present W and contacts. `pass` calls a function with all blocks of rows, color
-/// after color.
+/// Calls `pass` with what rows of stress do, which it does with all blocks, color after color, and adds what
+/// contacts and hooks resist.
 template <class Pass>
-void solve_for_change(const state::Particles& particles, StiffSystem& system, const Pass& pass) {
-  const auto resist = [&] {
-    pass(resist_tetrahedra);
-    resist_stiff_rows(system);
-    resist_ties(system);
-  };
-  if (look_back(system)) resist();
+void resist_direction(const StiffSystem& system, const Pass& pass) {
+  pass(resist_tetrahedra);
+  resist_stiff_rows(system);
+  resist_ties(system);
+}
+
+/// Finds the first direction for the present W and contacts, from the change so far.
+template <class Pass>
+void begin_directions(const state::Particles& particles, StiffSystem& system, const Pass& pass) {
+  if (look_back(system)) resist_direction(system, pass);
   aim(particles, system);
+}
+
+/// Goes along directions until the error is small enough. Call it again with a smaller error to go on.
+template <class Pass>
+void follow_directions(StiffSystem& system, const Pass& pass) {
   while (needs_direction(system)) {
-    resist();
+    resist_direction(system, pass);
     advance(system);
   }
 }
