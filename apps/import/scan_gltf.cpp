@@ -81,6 +81,9 @@ void scan_json(std::string_view text) {
   const json document = json::parse(text, nullptr, false);
   if (!document.is_object()) throw Refusal(ImporterExit::kBadSyntax, "not a glTF file: no JSON object");
   const auto nodes = document.find("nodes");
+  if (nodes != document.end() && nodes->is_object()) {  // In glTF 2 they are an array.
+    throw Refusal(ImporterExit::kUnsupported, "glTF 1 is not read: save it as glTF 2");
+  }
   if (nodes != document.end() && nodes->is_array()) scan_nodes(*nodes);
 }
 

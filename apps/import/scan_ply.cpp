@@ -60,6 +60,8 @@ class Header {
     return word != "end_header";
   }
 
+  [[nodiscard]] bool has_faces() const { return has_faces_; }
+
   /// Returns the fewest bytes that can hold all elements: in the text form, a digit and a line's end each.
   [[nodiscard]] std::uint64_t least_size() const {
     return is_text_ ? 2 * all_elements_ - std::min<std::uint64_t>(all_elements_, 1) : bytes_;
@@ -67,10 +69,12 @@ class Header {
 
  private:
   void add_element(std::string_view line) {
+    const std::string_view name = take_word(line);
     // The importer would keep one triangle of all strips, and say nothing.
-    if (take_word(line) == "tristrips") {
+    if (name == "tristrips") {
       throw Refusal(ImporterExit::kUnsupported, "strips of triangles are not read: save it with faces");
     }
+    has_faces_ = has_faces_ || name == "face";
     const std::string_view number = take_word(line);
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), count_);
     if (error != std::errc() || end != number.data() + number.size()) {
@@ -91,6 +95,7 @@ class Header {
   }
 
   bool is_text_ = false;
+  bool has_faces_ = false;
   std::uint64_t count_ = 0;  ///< Count of the element that the next properties belong to.
   std::uint64_t all_elements_ = 0;
   std::uint64_t bytes_ = 0;
@@ -113,6 +118,7 @@ void scan_ply(std::span<const std::byte> bytes) {
   if (header.least_size() > text.size() - at) {
     throw Refusal(ImporterExit::kBadSyntax, "shorter than its header says");
   }
+  if (!header.has_faces()) throw Refusal(ImporterExit::kOutOfRange, "points alone, without faces");
 }
 
 }  // namespace hooke::importer

@@ -166,6 +166,10 @@ TEST_SUITE("io/model_hostile") {
         "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
         "0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
     CHECK(has_line(refused(folder.file("strips.ply", strips)), "save it with faces"));
+    const std::string points = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n";
+    CHECK(has_line(refused(folder.file("points.ply", points)), "points alone"));
+    const std::string old = R"({"asset":{},"nodes":{"node_1":{"children":[]}}})";
+    CHECK(has_line(refused(folder.file("old.gltf", old)), "save it as glTF 2"));
     std::string wide = "\xFE\xFF";
     for (const char c : std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")) wide += std::string{'\0', c};
     CHECK(has_line(refused(folder.file("wide.obj", wide)), "save it as UTF-8"));
