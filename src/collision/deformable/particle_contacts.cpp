@@ -326,20 +326,55 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
   }
 }
 
+namespace {
+
+/// Radius about a body's center of mass beyond which a collider of it does not reach. Bodies may have been
+/// moved since their boxes were made.
+Real reach_of(const state::Tables& t, std::uint32_t collider) {
+  const ShapeKind kind = t.colliders.shape[collider].shape.kind;
+  if (kind == ShapeKind::kHalfSpace || kind == ShapeKind::kMesh) return HUGE_VALF;
+  return t.bodies.traits[t.colliders.body[collider]].radius + kBoxRounding;
+}
+
+/// Lists those of `colliders` that come so near to the object's points that one may touch.
+void list_reached(const state::Tables& t, std::span<const std::uint32_t> colliders,
+                  const state::Deformable& object, std::vector<std::uint32_t>& reached) {
+  DVec3 lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  DVec3 upper = -lower;
+  for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+    const DVec3 x = vector_cast<double>(t.particles.position[p].x);
+    const auto radius = static_cast<double>(t.particles.position[p].radius);
+    lower = geometry::min_of(lower, x - DVec3{radius, radius, radius});
+    upper = geometry::max_of(upper, x + DVec3{radius, radius, radius});
+  }
+  reached.clear();
+  for (const std::uint32_t c : colliders) {
+    const DVec3 center = state::pose_now(t.bodies, t.colliders.body[c]).position - object.origin;
+    const DVec3 nearest = geometry::max_of(lower, geometry::min_of(upper, center));
+    if (length(center - nearest) <= static_cast<double>(reach_of(t, c))) reached.push_back(c);
+  }
+}
+
+}  // namespace
+
 double largest_penetration(const state::Tables& t) {
   double deepest = 0;
   std::vector<std::uint32_t> colliders;
+  std::vector<std::uint32_t> reached;
   std::vector<Hooked> hooked;
   std::vector<Frame> frames;
   list_solid_colliders(t, colliders);
   list_hooked(t, hooked);
   for (const state::Deformable& object : t.objects) {
-    make_frames(t, colliders, object, frames);
+    list_reached(t, colliders, object, reached);
+    make_frames(t, reached, object, frames);
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+      const Vec3 x = t.particles.position[p].x;
       const Real radius = t.particles.position[p].radius;
       for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (is_hooked(hooked, p, t.colliders.body[colliders[i]])) continue;
-        const Real distance = distance_to(frames[i], t.particles.position[p].x, radius);
+        if (length(x - frames[i].center) > reach_of(t, reached[i]) + radius) continue;
+        if (is_hooked(hooked, p, t.colliders.body[reached[i]])) continue;
+        const Real distance = distance_to(frames[i], x, radius);
         deepest = std::max(deepest, static_cast<double>(radius - distance));
       }
     }
