@@ -3,6 +3,8 @@
 #include "render/shapes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <tuple>
@@ -168,6 +170,15 @@ Result<Item> make_item(const DrawMesh& mesh, std::size_t index) {
   return item;
 }
 
+std::vector<Vec3> roots_of_hairs(const DrawList& list) {
+  std::vector<Vec3> roots;
+  for (const DrawRope& rope : list.ropes) {
+    if (rope.surface.shading != Shading::kHair) continue;
+    roots.push_back(rope.points.empty() ? Vec3{NAN, NAN, NAN} : rope.points.front());
+  }
+  return roots;
+}
+
 /// Adds all tubes, or all tufts of hair, to one mesh, each as a range of its own.
 void collect_ropes(const DrawList& list, bool hairs, MeshGeometry& mesh,
                    const std::shared_ptr<MeshGeometry>& owner, Collector& collector) {
@@ -176,12 +187,15 @@ void collect_ropes(const DrawList& list, bool hairs, MeshGeometry& mesh,
   ++mesh.vertex_revision;
   ++mesh.topology_revision;
   std::vector<Item> items;
+  const std::vector<Vec3> roots = hairs ? roots_of_hairs(list) : std::vector<Vec3>{};
+  std::uint32_t tuft = 0;
   for (const DrawRope& rope : list.ropes) {
     if ((rope.surface.shading == Shading::kHair) != hairs) continue;
     Item item;
     item.batch.first_index = mesh.indices.size();
     if (hairs) {
-      add_tuft(rope.points, rope.radius, list.camera.eye, mesh);
+      const float spread = tuft_spread(roots, tuft, rope.radius);
+      add_tuft(rope.points, {rope.radius, spread, tuft++}, list.camera.eye, mesh);
     } else {
       add_tube(rope.points, rope.radius, mesh);
     }

@@ -2,6 +2,8 @@
 
 #include "render/draw_list.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 /// \file
@@ -36,9 +38,19 @@ void update_normals(MeshGeometry& geometry);
 /// Texture coordinate u goes around once, v along it in circumferences.
 void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry);
 
+/// The hairs that are drawn for one that was simulated.
+struct Tuft {
+  float radius = 0;          ///< Of the hair that was simulated [m].
+  float spread = 0;          ///< Distance of the outermost hairs from it [m].
+  std::uint32_t number = 0;  ///< Tells a tuft from others, whose hairs lie otherwise.
+};
+
 /// Adds a tuft of hairs that follow the points: strips that face the eye, with the direction along the hair
-/// in place of the normal, u a number of the hair's own and v from 0 at the root to 1 at the tip. `radius` is
-/// that of the one hair that was simulated for the tuft. Points are left out as for a tube.
-void add_tuft(std::span<const Vec3> points, float radius, Vec3 eye, MeshGeometry& geometry);
+/// in place of the normal, u a number of the hair's own and v from 0 at the root to 1 at the tip. Points are
+/// left out as for a tube.
+void add_tuft(std::span<const Vec3> points, const Tuft& tuft, Vec3 eye, MeshGeometry& geometry);
+
+/// Returns the spread of the tuft of one of these roots, which leaves no gap to the next root.
+[[nodiscard]] float tuft_spread(std::span<const Vec3> roots, std::size_t one, float radius);
 
 }  // namespace hooke::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 
 namespace hooke::render {
@@ -12,9 +13,13 @@ constexpr int kSides = 14;
 constexpr std::uint32_t kRing = kSides + 1;  ///< Vertices of a ring.
 constexpr int kTubeCapRings = 4;
 
-constexpr std::uint32_t kHairs = 24;  ///< Hairs of a tuft.
-constexpr float kTuftRadius = 4;      ///< Radius of a tuft, in radii of the hair that was simulated.
-constexpr float kHairRadius = 0.28F;  ///< Radius of a drawn hair, likewise.
+constexpr float kHairsPerSpread = 5;    ///< Hairs of a tuft per radius of a hair in its spread.
+constexpr float kFewestHairs = 24;      ///< Of a tuft.
+constexpr float kMostHairs = 96;        ///< The same.
+constexpr float kLeastSpread = 4;       ///< Of a tuft, in radii of the hair that was simulated.
+constexpr float kMostSpread = 24;       ///< The same.
+constexpr float kSpreadPerGap = 0.75F;  ///< Of a tuft, in distances to the next root.
+constexpr float kHairRadius = 0.28F;    ///< Radius of a drawn hair, likewise.
 
 /// A Station is a point of the curve and its unit tangent.
 struct Station {
@@ -154,7 +159,18 @@ void add_hair(std::span<const Station> stations, std::span<const Mat3> frames, c
 
 }  // namespace
 
-void add_tuft(std::span<const Vec3> points, float radius, Vec3 eye, MeshGeometry& geometry) {
+float tuft_spread(std::span<const Vec3> roots, std::size_t one, float radius) {
+  float nearest = HUGE_VALF;
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    if (i != one) nearest = std::min(nearest, length(roots[i] - roots[one]));
+  }
+  // A hair by itself, or one without a place, is no part of a head.
+  const float gap = std::isfinite(nearest) ? kSpreadPerGap * nearest : 0;
+  return std::clamp(gap, kLeastSpread * radius, kMostSpread * radius);
+}
+
+void add_tuft(std::span<const Vec3> points, const Tuft& tuft, Vec3 eye, MeshGeometry& geometry) {
+  const float radius = tuft.radius;
   if (!(radius > 0) || !std::isfinite(radius)) return;
   const std::vector<Vec3> usable = usable_points(points, radius);
   if (usable.size() < 2) return;
@@ -167,10 +183,10 @@ void add_tuft(std::span<const Vec3> points, float radius, Vec3 eye, MeshGeometry
     if (station.tangent != Vec3{}) frame = carried_frame(frame, station.tangent);
     frames.push_back(frame);
   }
-  // The tuft is told from others by how many were before it.
-  const auto tuft = static_cast<std::uint32_t>(geometry.indices.size() % 65521);
-  for (std::uint32_t hair = 0; hair < kHairs; ++hair) {
-    add_hair(stations, frames, hair_place(hair, tuft), {kTuftRadius * radius, kHairRadius * radius}, eye,
+  const auto hairs = static_cast<std::uint32_t>(
+      std::clamp(kHairsPerSpread * tuft.spread / radius, kFewestHairs, kMostHairs));
+  for (std::uint32_t hair = 0; hair < hairs; ++hair) {
+    add_hair(stations, frames, hair_place(hair, tuft.number), {tuft.spread, kHairRadius * radius}, eye,
              geometry);
   }
 }
