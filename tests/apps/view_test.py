@@ -152,7 +152,12 @@ class Window:
         return held
 
     def close(self):
+        """Closes the window as a user does, who is asked once more if edits are not saved."""
+        edited = self.fresh()["edited"]
         self.do("key", "Escape")
+        if edited:
+            self.wait("a question", lambda s: s["hint"].startswith("Edits are not saved"))
+            self.do("key", "Escape")
         code = self.program.wait(LIMIT)
         self.program.stderr.close()
         return code

@@ -161,7 +161,7 @@ constexpr const char* kEverything = R"({
      "pins": [{"topmost": 0.5}]},
     {"mesh": "inline", "cell": 0.25, "position": [0, 4, 0], "total_mass": 2}],
   "timeline": [
-    {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {}}}]}},
+    {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {"radius": 0.1}}}]}},
     {"at_step": 2, "remove": "late"},
     {"at_step": 3, "motion": {"object": "rope", "point": "last", "motion": {"velocity": [1, 0, 0]}}},
     {"at_step": 4, "unpin": {"object": "cloth", "point": 2}},
@@ -304,6 +304,28 @@ TEST_SUITE("io/scene_write") {
       CHECK(*again.value == *loaded.value);
       CHECK(schema_complaint(read(file)).empty());
     }
+  }
+
+  TEST_CASE("a default that the library of materials would replace is written") {
+    const auto loaded = hooke::parse_scene(R"({
+      "version": 1,
+      "materials": {"dull": {"like": "steel", "metalness": 0}},
+      "bodies": [
+        {"name": "box", "kind": "dynamic", "material": "steel", "density": 1000, "shape": {"sphere": {"radius": 0.1}}},
+        {"name": "parts", "kind": "dynamic", "material": "steel",
+         "shape": {"parts": [{"shape": {"sphere": {"radius": 0.1}}, "density": 1000}]}}],
+      "ropes": [{"name": "rope", "material": "nylon_rope", "radius": 0.01, "total_mass": 1}],
+      "cloths": [{"name": "cloth", "material": "silk", "areal_density": 0.2, "shear_stiffness": 100}],
+      "solids": [{"name": "solid", "material": "gelatine", "density": 1000, "poisson_ratio": 0.3}],
+      "timeline": [{"at_step": 3, "add": {"cloths": [{"name": "late", "material": "silk",
+                    "areal_density": 0.2}]}}]})",
+                                           "scene.json");
+    INFO((loaded.errors.empty() ? "" : hooke::to_line(loaded.errors.front())));
+    REQUIRE(loaded);
+    const auto again = hooke::parse_scene(hooke::write_scene(*loaded.value), "scene.json");
+    REQUIRE(again);
+    CHECK(*again.value == *loaded.value);
+    CHECK(again.warnings.empty());
   }
 
   TEST_CASE("saving replaces the file as a whole or not at all") {

@@ -82,6 +82,7 @@ void ViewLog::write(const SessionView& view, const Eye& eye, const PictureFacts&
                {"boxes", facts.boxes},
                {"scale", facts.scale},
                {"font", facts.font_px},
+               {"hint", facts.hint},
                {"help", facts.help},
                {"gl_error", facts.gl_error},
                {"size", eye.size},

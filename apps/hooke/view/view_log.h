@@ -20,6 +20,7 @@ struct PictureFacts {
   double scale = 1;            ///< Width and height of the picture in those of the window.
   float font_px = 0;           ///< Height of the font.
   std::string plot = {};       ///< What is plotted.
+  std::string hint = {};       ///< What the window asks for.
   bool help = false;           ///< Whether the page of keys is shown.
   std::uint32_t gl_error = 0;  ///< Error of OpenGL since the last picture; 0 for none.
 };

@@ -391,6 +391,7 @@ void write_log(Window& window, const render::Context& context) {
   window.facts.boxes = window.panel.boxes();
   window.facts.plot = window.panel.plotted();
   window.facts.font_px = ImGui::GetFontSize();
+  window.facts.hint = window.input.hint();
   window.facts.help = window.input.shows_help();
   window.facts.gl_error = context.take_error();
   window.log.write(*window.view, present_eye(window), window.facts);
