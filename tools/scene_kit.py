@@ -232,8 +232,7 @@ def spot(position, target, color, intensity, inner_deg, outer_deg):
 
 def low_sun(direction, intensity=1.4):
     """Warm light of a low sun, whose shadows are long."""
-    return {"sky": {"brightness": 0.85, "sun": 0},
-            "lights": [{"kind": "directional", "direction": direction, "color": [1, 0.82, 0.6], "intensity": intensity}]}
+    return {"sky": {"brightness": 0.85, "sun": intensity, "sun_direction": direction, "sun_color": [1, 0.82, 0.6]}}
 
 
 def box(x, y, z):

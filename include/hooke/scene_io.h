@@ -368,6 +368,7 @@ struct SceneSky {
   Real sun = Real(1);         ///< Intensity of the sun, over the usual; 0 for none. [0, 10]
   /// In which the sun's light goes; of any length but zero.
   Vec3 sun_direction = {Real(-0.45f), Real(-0.8f), Real(-0.35f)};
+  std::array<float, 3> sun_color = {1.0f, 0.89f, 0.71f};  ///< Linear red, green and blue, each in [0, 1].
 };
 
 /// How exact the laboratory must be, whatever the method.

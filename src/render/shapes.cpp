@@ -10,8 +10,6 @@ namespace hooke::render {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kRoundSides = 32;
-constexpr int kShapeCapRings = 10;
 
 /// This is a point of an outline that is rotated about the y axis: radius and height, normal in the same
 /// plane, v.
@@ -33,13 +31,13 @@ void add_band(std::uint32_t first, std::uint32_t second, std::uint32_t count, Me
 }
 
 /// Makes a shape of revolution; the profile runs from the top to the bottom.
-MeshGeometry make_turned(std::span<const ProfilePoint> profile) {
+MeshGeometry make_turned(std::span<const ProfilePoint> profile, int sides = kRoundSides) {
   MeshGeometry geometry;
-  const auto ring = static_cast<std::uint32_t>(kRoundSides + 1);
+  const auto ring = static_cast<std::uint32_t>(sides + 1);
   for (const ProfilePoint& point : profile) {
     const auto first = static_cast<std::uint32_t>(geometry.vertices.size());
-    for (int i = 0; i <= kRoundSides; ++i) {
-      const float part = static_cast<float>(i) / kRoundSides;
+    for (int i = 0; i <= sides; ++i) {
+      const float part = static_cast<float>(i) / static_cast<float>(sides);
       const float s = std::sin(2 * kPi * part);
       const float c = std::cos(2 * kPi * part);
       geometry.vertices.push_back(
@@ -121,13 +119,15 @@ MeshGeometry make_sphere(int splits) {
   return geometry;
 }
 
-MeshGeometry make_capsule(float radius, float half_height) {
+MeshGeometry make_capsule(float radius, float half_height, int sides) {
   std::vector<ProfilePoint> profile;
+  const int rings = (sides + 2) / 3;
   for (int end = 0; end < 2; ++end) {
     const float shift = end == 0 ? half_height : -half_height;
-    for (int i = 0; i <= kShapeCapRings; ++i) {
+    for (int i = 0; i <= rings; ++i) {
       // The angle is zero at the upper pole, pi at the lower one.
-      const float angle = 0.5F * kPi * (static_cast<float>(i) / kShapeCapRings + static_cast<float>(end));
+      const float angle =
+          0.5F * kPi * (static_cast<float>(i) / static_cast<float>(rings) + static_cast<float>(end));
       // The radius must be exactly zero at both poles. Otherwise the triangles there would have an area and
       // could face inward.
       const float s = std::max(std::sin(angle), 0.0F);
@@ -137,7 +137,7 @@ MeshGeometry make_capsule(float radius, float half_height) {
   }
   const float total = radius + half_height;
   for (ProfilePoint& point : profile) point.v = total > 0 ? 0.5F + 0.5F * point.height / total : 0.5F;
-  return make_turned(profile);
+  return make_turned(profile, sides);
 }
 
 MeshGeometry make_cylinder(float radius, float half_height) {

@@ -11,6 +11,9 @@
 
 namespace hooke::render {
 
+/// Sides of a turned shape.
+inline constexpr int kRoundSides = 32;
+
 /// Makes a box of `half_size` about the origin; every side shows the whole texture.
 MeshGeometry make_box(Vec3 half_size);
 
@@ -19,8 +22,8 @@ MeshGeometry make_box(Vec3 half_size);
 MeshGeometry make_sphere(int splits);
 
 /// Makes a cylinder of `radius` along y from -half_height to half_height, with a half sphere on both ends.
-/// `half_height` 0 gives a sphere.
-MeshGeometry make_capsule(float radius, float half_height);
+/// `half_height` 0 gives a sphere. It has `sides` around, at least 3.
+MeshGeometry make_capsule(float radius, float half_height, int sides = kRoundSides);
 
 /// Makes a cylinder of `radius` along y from -half_height to half_height, with flat ends.
 MeshGeometry make_cylinder(float radius, float half_height);

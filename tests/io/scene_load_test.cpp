@@ -191,6 +191,8 @@ TEST_SUITE("io/scene_load") {
          R"("expect": [{"quantity": "y", "of": "b", "point": 0, "op": "<", "value": 1, "tolerance": 1}])",
          {"1:133: expect[0].point: has no effect: 'b' is a body, which has no points",
           "1:159: expect[0].tolerance: has no effect: it is for \"==\" and \"within\""}},
+        {R"("sky": {"sun": 0, "sun_color": [1, 0, 0]})",
+         {"1:34: sky.sun_color: has no effect: there is no sun"}},
         {R"("sky": {"sun": 0, "sun_direction": [1, 0, 0]}, "lights": [{"direction": [1, 0, 0], "inner_deg": 3}, )"
          R"({"kind": "directional", "position": [1, 0, 0], "outer_deg": 40}])",
          {"1:34: sky.sun_direction: has no effect: there is no sun",

@@ -179,7 +179,7 @@ constexpr const char* kEverything = R"({
   "camera": {"eye": [1, 2, 3], "target": [3, 2, 1], "fov_deg": 60,
              "path": [{"time": 0, "eye": [0, 0, 0], "target": [1, 1, 1]},
                       {"time": 2.5, "eye": [0, 1, 0], "target": [1, 1, 1]}]},
-  "sky": {"brightness": 0.5, "sun": 2, "sun_direction": [0, -1, -1]},
+  "sky": {"brightness": 0.5, "sun": 2, "sun_direction": [0, -1, -1], "sun_color": [1, 0.5, 0.25]},
   "lights": [
     {"kind": "spot", "position": [1, 2, 3], "direction": [0, -1, 1], "color": [1, 0.5, 0.25], "intensity": 4,
      "inner_deg": 12, "outer_deg": 15, "shadows": false},

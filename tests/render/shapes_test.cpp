@@ -55,6 +55,10 @@ TEST_SUITE("render/shapes") {
     const MeshGeometry capsule = hooke::render::make_capsule(0.5F, 1);
     CHECK(volume(capsule) == doctest::Approx(kPi * 0.25 * 2 + 4 * kPi / 3 * 0.125).epsilon(0.02));
     CHECK(worst_agreement(capsule) > 0.97F);
+    const MeshGeometry coarse = hooke::render::make_capsule(0.5F, 1, 10);
+    CHECK(coarse.indices.size() < capsule.indices.size() / 8);
+    CHECK(volume(coarse) == doctest::Approx(volume(capsule)).epsilon(0.1));
+    CHECK(worst_agreement(coarse) > 0.7F);
 
     const MeshGeometry cylinder = hooke::render::make_cylinder(0.5F, 1);
     CHECK(volume(cylinder) == doctest::Approx(kPi * 0.25 * 2).epsilon(0.01));

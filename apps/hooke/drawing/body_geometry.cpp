@@ -8,7 +8,8 @@ namespace hooke::app {
 
 namespace {
 
-constexpr float kHalfSpaceSize = 50;  ///< Size of a half-space that is not the ground [m].
+constexpr int kSides[] = {render::kRoundSides, 20, 10};  ///< Of the levels of a capsule.
+constexpr float kHalfSpaceSize = 50;                     ///< Size of a half-space that is not the ground [m].
 
 /// Returns `place`, which is filled at the first call.
 template <class Make>
@@ -32,7 +33,8 @@ BodyGeometry BodyGeometries::find(const Shape& shape, const std::shared_ptr<cons
       once(spheres_[0], [] { return render::make_sphere(4); });
       once(spheres_[1], [] { return render::make_sphere(2); });
       once(spheres_[2], [] { return render::make_sphere(1); });
-      return {.levels = spheres_, .scale = {shape.radius, shape.radius, shape.radius}};
+      return {
+          .levels = spheres_, .radius = shape.radius, .scale = {shape.radius, shape.radius, shape.radius}};
     case ShapeKind::kBox:
       return {.levels = always(once(box_, unit_box)), .scale = shape.half_extents};
     case ShapeKind::kHalfSpace:
@@ -43,9 +45,12 @@ BodyGeometry BodyGeometries::find(const Shape& shape, const std::shared_ptr<cons
       return {.levels = always(once(cylinder_, [] { return render::make_cylinder(1, 1); })), .scale = round};
     case ShapeKind::kCone:
       return {.levels = always(once(cone_, [] { return render::make_cone(1, 1); })), .scale = round};
-    case ShapeKind::kCapsule:
-      return {.levels = always(once(capsules_[{shape.radius, shape.half_height}],
-                                    [&] { return render::make_capsule(shape.radius, shape.half_height); }))};
+    case ShapeKind::kCapsule: {
+      auto& levels = capsules_[{shape.radius, shape.half_height}];
+      for (std::size_t i = 0; i < levels.size(); ++i)
+        once(levels[i], [&] { return render::make_capsule(shape.radius, shape.half_height, kSides[i]); });
+      return {.levels = levels, .radius = shape.radius};
+    }
     case ShapeKind::kHull:
     case ShapeKind::kMesh:
       if (model == nullptr) return {};

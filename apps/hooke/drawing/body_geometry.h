@@ -20,6 +20,7 @@ struct BodyGeometry {
   /// Levels from fine to coarse, for smaller and smaller pictures. They are the same where fewer triangles
   /// would not be faster, and null for a model that is missing.
   std::array<Geometry, 3> levels;
+  float radius = 1;  ///< Of what has levels [m].
   Vec3 scale = {1, 1, 1};
   Vec3 shift = {};  ///< Offset [m], in the shape's frame.
 };
@@ -36,7 +37,7 @@ class BodyGeometries {
   std::array<Geometry, 3> spheres_;
   Geometry box_, cylinder_, cone_;
   /// By radius and half height, because capsules cannot be scaled.
-  std::map<std::pair<Real, Real>, Geometry> capsules_;
+  std::map<std::pair<Real, Real>, std::array<Geometry, 3>> capsules_;
   std::map<std::shared_ptr<const Model>, Geometry> models_;
 };
 

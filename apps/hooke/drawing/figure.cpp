@@ -17,8 +17,8 @@ namespace {
 /// Above this number springs are drawn as lines, because round ones cost a hundred triangles each.
 constexpr std::size_t kMostRoundSprings = 3000;
 constexpr float kLeastRopeRadius = 1.2F;  ///< Half the least width of a rope [px].
-/// Spheres with a radius above the first [px] are drawn by the finest level, smaller ones by the next, and
-/// below the second by the coarsest. None is more than half a pixel off.
+/// Spheres and capsules with a radius above the first [px] are drawn by the finest level, smaller ones by the
+/// next, and below the second by the coarsest. None is more than half a pixel off.
 constexpr std::array<float, 2> kLevelRadius = {40, 10};
 constexpr float kIronDensity = 7850;   ///< That of the library's steel [kg/m^3].
 constexpr float kHookRadius = 0.008F;  ///< Radius of the line that shows a distance hook [m].
@@ -285,7 +285,7 @@ void add_body(const Figure& figure, const FigurePlace& place, render::DrawList& 
   const float distance = length(place.position - place.eye);
   const Mat4 body = make_transform(place.position, place.rotation, Vec3{1, 1, 1});
   for (const FigureSolid& solid : figure.solids) {
-    const float radius = solid.geometry.scale.x / std::max(place.pixel * distance, 1e-9F);
+    const float radius = solid.geometry.radius / std::max(place.pixel * distance, 1e-9F);
     const std::size_t level = radius > kLevelRadius[0] ? 0 : radius > kLevelRadius[1] ? 1 : 2;
     if (solid.geometry.levels[level] == nullptr) continue;
     for (const PaintedRange& range : solid.ranges) {

@@ -51,6 +51,7 @@ render::Light light_of(const SceneLight& light, const DVec3& origin) {
 
 void set_lights(const SceneState& state, const DVec3& origin, render::DrawList& list) {
   list.sun.intensity = static_cast<float>(state.sky.sun);
+  list.sun.color = srgb_color_of(state.sky.sun_color);
   list.sun.direction = -vector_cast<float>(state.sky.sun_direction);
   list.sky.brightness = static_cast<float>(state.sky.brightness);
   list.lights.clear();

@@ -306,7 +306,7 @@ Result<void> MotionRecorder::add_lights(const Scene& scene) {
     auto added = motion_.add_light({.name = "sun",
                                     .kind = MotionLight::Kind::kDirectional,
                                     .direction = scene.sky.sun_direction,
-                                    .color = render::linear_of(list.sun.color),
+                                    .color = scene.sky.sun_color,
                                     .strength = sun});
     if (!added) return added;
   }

@@ -126,6 +126,9 @@ void Inspector::build_objects(const SessionView& view, ViewInput& input, WidgetB
   build_save(view, input, boxes);
   ImGui::Separator();
   const float height = ImGui::GetContentRegionAvail().y;
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint("##find", "find an object", find_.data(), find_.size());
+  note_box(boxes, "find");
   ImGui::BeginChild("tree", {0, 0.35F * height}, false, ImGuiWindowFlags_NoNav);
   build_object_list(view, input, boxes);
   ImGui::EndChild();
@@ -169,21 +172,40 @@ void Inspector::build_kind(const SessionView& view, SceneObject::Kind kind, cons
     if (object.kind == kind) objects.push_back(&object);
   }
   if (objects.empty()) return;
+  const std::vector<ObjectRow> rows = object_rows(objects, find_.data(), open_arrays_, view.selected);
+  if (rows.empty()) return;
   ImGui::SetNextItemOpen(true, ImGuiCond_Once);
   if (!ImGui::TreeNode(title, "%s (%zu)", title, objects.size())) return;
   // A heap of ten thousand bodies is as quick to show as one: only what is in sight is built.
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(objects.size()));
+  clipper.Begin(static_cast<int>(rows.size()));
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const std::string& name = objects[static_cast<std::size_t>(i)]->name;
       ImGui::PushID(i);
-      if (ImGui::Selectable(name.c_str(), name == view.selected)) input.post(Select{name});
+      build_row(rows[static_cast<std::size_t>(i)], view, input, boxes);
       ImGui::PopID();
-      note_box(boxes, "object " + name);
     }
   }
   ImGui::TreePop();
+}
+
+void Inspector::build_row(const ObjectRow& row, const SessionView& view, ViewInput& input,
+                          WidgetBoxes& boxes) {
+  if (row.members == 0) {
+    if (ImGui::Selectable(row.name.c_str(), row.name == view.selected)) input.post(Select{row.name});
+    note_box(boxes, "object " + row.name);
+    return;
+  }
+  ImGui::SetNextItemOpen(row.is_open);
+  constexpr ImGuiTreeNodeFlags kFlags = ImGuiTreeNodeFlags_NoTreePushOnOpen;
+  const bool is_open = ImGui::TreeNodeEx("array", kFlags, "%s (%zu)", row.name.c_str(), row.members);
+  note_box(boxes, "array " + row.name);
+  if (is_open == row.is_open) return;
+  if (is_open) open_arrays_.insert(row.name);
+  if (is_open) return;
+  open_arrays_.erase(row.name);
+  // What is selected would keep its array open.
+  if (view.selected.starts_with(row.name + "[")) input.post(Select{});
 }
 
 void Inspector::build_selected(const SessionView& view, ViewInput& input, WidgetBoxes& boxes) {

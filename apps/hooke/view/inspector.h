@@ -2,6 +2,7 @@
 
 #include "hooke/session/scene_keys.h"
 #include "hooke/session/session.h"
+#include "hooke/view/object_rows.h"
 #include "hooke/view/scene_list.h"
 #include "hooke/view/view_input.h"
 #include "hooke/view/widget_boxes.h"
@@ -13,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace hooke::app {
@@ -30,6 +32,7 @@ class Inspector {
   void build_object_list(const SessionView& view, ViewInput& input, WidgetBoxes& boxes);
   void build_kind(const SessionView& view, SceneObject::Kind kind, const char* title, ViewInput& input,
                   WidgetBoxes& boxes);
+  void build_row(const ObjectRow& row, const SessionView& view, ViewInput& input, WidgetBoxes& boxes);
   void build_selected(const SessionView& view, ViewInput& input, WidgetBoxes& boxes);
   void build_keys(const SessionView& view, const std::string& path, ViewInput& input, WidgetBoxes& boxes);
   void build_key(const SceneKey& key, ViewInput& input, WidgetBoxes& boxes);
@@ -46,6 +49,8 @@ class Inspector {
   std::string typed_path_;            ///< Key whose value is being typed; empty for none.
   std::array<char, 512> typed_ = {};  ///< What was typed so far.
   std::array<char, 256> save_name_ = {};
+  std::array<char, 64> find_ = {};  ///< Text that the names of the objects shown have.
+  std::set<std::string> open_arrays_;
   std::uint64_t opened_ = 0;  ///< SessionView::opened of the last picture.
   std::unique_ptr<SceneList> scenes_;
   std::map<std::string, render::GlName> pictures_;

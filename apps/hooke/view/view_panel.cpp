@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace hooke::app {
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr float kPanelWidth = 23;        ///< In heights of the font.
 constexpr float kTimelineHeight = 6.5F;  ///< Of the bar below, with what lies around it; the same.
+constexpr double kFreshSeconds = 6;      ///< For which the answer to a command is bright [s].
 const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
 const ImVec4 kTroubleColor = {1, 0.75F, 0.35F, 1};
 
@@ -154,12 +156,20 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, const P
   if (!view.held.empty()) ImGui::Text("holding '%s'", view.held.c_str());
   const std::string hint(input.hint());
   if (!hint.empty()) write_wrapped(hint, {1, 0.9F, 0.5F, 1});
-  if (view.said) write_wrapped(view.said->text, view.said->done ? ImVec4{0.7F, 0.85F, 1, 1} : kWarningColor);
+  build_said(view);
   if (!view.problem.empty()) write_wrapped(view.problem, kWarningColor);
   build_messages(view);
   build_troubles(view);
   ImGui::TextDisabled("keys: ? or F1");
   ImGui::End();
+}
+
+void ViewPanel::build_said(const SessionView& view) {
+  if (!view.said) return;
+  if (std::exchange(said_by_, view.said_by) != view.said_by) said_at_ = ImGui::GetTime();
+  const ImVec4 color = view.said->done ? ImVec4{0.7F, 0.85F, 1, 1} : kWarningColor;
+  const bool is_old = ImGui::GetTime() > said_at_ + kFreshSeconds;
+  write_wrapped(view.said->text, is_old ? ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled) : color);
 }
 
 void ViewPanel::build_timeline(const SessionView& view, ViewInput& input) {

@@ -32,8 +32,12 @@ class ViewPanel {
 
  private:
   void build_figures(const SessionView& view, ViewInput& input, const PictureCost& pictures);
+  /// Shows what came of the last command, in gray once it is old.
+  void build_said(const SessionView& view);
   void build_timeline(const SessionView& view, ViewInput& input);
 
+  std::uint64_t said_by_ = 0;                 ///< Number of the command whose answer is shown.
+  double said_at_ = 0;                        ///< When the answer was new [s].
   std::optional<std::uint64_t> wanted_step_;  ///< While the slider is dragged.
   PlotPanel plot_;
   Inspector inspector_;

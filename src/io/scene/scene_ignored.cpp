@@ -179,7 +179,7 @@ void IgnoredKeys::check(const SceneCamera& camera) {
 }
 
 void IgnoredKeys::check(const SceneSky& sky) {
-  ignore("sky", {"sun_direction"}, sky.sun == Real(0), "there is no sun");
+  ignore("sky", {"sun_direction", "sun_color"}, sky.sun == Real(0), "there is no sun");
 }
 
 void IgnoredKeys::check(const SceneLight& light, const std::string& path) {

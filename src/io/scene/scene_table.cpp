@@ -515,7 +515,8 @@ const Kind& kind_of<SceneSky>() {
       .fields = {field<&SceneSky::brightness>("brightness", "", between(0, 10),
                                               "Of the sky and of its light, over the usual; 0 is night."),
                  field<&SceneSky::sun>("sun", "", between(0, 10), "Of the sun, over the usual."),
-                 field<&SceneSky::sun_direction>("sun_direction", "", kAny, "In which its light goes.")},
+                 field<&SceneSky::sun_direction>("sun_direction", "", kAny, "In which its light goes."),
+                 field<&SceneSky::sun_color>("sun_color", "", between(0, 1), "Red, green, blue, linear.")},
       .defaults = defaults_of<SceneSky>,
       .check = check_sky};
   return kind;

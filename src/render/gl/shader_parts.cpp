@@ -135,8 +135,16 @@ float tent_shadow(sampler2DShadow map, vec2 map_size, vec2 corner, vec2 texel, f
 
 #ifdef FAST
 float narrow_shadow(vec3 place, bool is_open) {
-  float size = shadow_info.y;
-  return tent_shadow(shadow_map, vec2(size), vec2(0.0), place.xy * size, place.z, is_open);
+  // Two taps a texel apart see as many open as closed points of the pattern of a half shadow. A loop that may
+  // run zero times, as above.
+  vec3 tap = vec3(place.x - 0.5 / shadow_info.y, place.y, min(place.z, 1.0));
+  float sum = 0.0;
+  int taps = is_open ? 2 : 0;
+  for (int i = 0; i < taps; ++i) {
+    sum += textureLod(shadow_map, tap, 0.0);
+    tap.x += 1.0 / shadow_info.y;
+  }
+  return taps > 0 ? 0.5 * sum : 1.0;
 }
 #else
 // The sun is a disk, so the half shadow grows with the distance of what casts it (Fernando, "Percentage-closer
