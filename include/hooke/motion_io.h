@@ -131,6 +131,13 @@ struct MotionJoint {
   Real break_torque = kRigid;               ///< Torque that breaks it [N m].
 };
 
+/// From where the picture of a frame is taken. Up in the picture is y, or z where it looks along y.
+struct MotionCamera {
+  DVec3 eye = {};               ///< Place of the camera [m].
+  DVec3 target = {0, 0, -1};    ///< What is in the middle of the picture [m]; another place than `eye`.
+  float vertical_angle = 0.8f;  ///< Angle between the lower and the upper edge of the picture [rad]. (0, pi)
+};
+
 /// The state of an object in one frame.
 struct MotionState {
   DVec3 position = {};         ///< Origin of a body's frame, or mean of an object's points [m].
@@ -183,6 +190,9 @@ class MotionRecording {
   /// Sets the state of an object of points and its vertices in this frame, in the world [m]. It does nothing
   /// unless there are as many as the mesh has.
   void set_points(std::uint32_t object, const MotionState& state, std::span<const Vec3> vertices);
+  /// Sets the camera from this frame on. Only .glb and .usda have one; frames before the first camera have
+  /// that. Errors: a number that is out of range or not finite, or a target at the eye.
+  Result<void> set_camera(const MotionCamera& camera);
   /// Stores the frame. Errors: kFileNotWritable where the disk is full.
   Result<void> finish_frame();
 

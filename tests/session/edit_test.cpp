@@ -270,10 +270,10 @@ TEST_SUITE("session/edit") {
       "areal_density": 0.2, "row_direction": [0, 0, 1], "bend": "angle", "bend_stiffness": 0.3,
       "pins": [{"column": 0}, {"column": 1}]}]})");
     auto view = desk.done(MakeSteps{2});
-    REQUIRE(view->troubles.size() == 1);
-    CHECK(view->troubles[0].starts_with("'strip' has hardly any of its bend_stiffness of 0.3 N m"));
+    REQUIRE(view->warnings.size() == 1);
+    CHECK(view->warnings[0].starts_with("'strip' has hardly any of its bend_stiffness of 0.3 N m"));
     view = desk.done(Change{"cloths[0].bend", "\"yarn\""});
-    CHECK(desk.done(MakeSteps{2})->troubles.empty());
+    CHECK(desk.done(MakeSteps{2})->warnings.empty());
   }
 
   TEST_CASE("an edit that is no scene is refused with the reason, and nothing changes") {

@@ -1,6 +1,7 @@
 #include "hooke/export/motion_recorder.h"
 
 #include "hooke/clock.h"
+#include "hooke/drawing/scene_camera.h"
 #include "hooke/scene_path.h"
 
 #include "render/batches.h"
@@ -155,6 +156,12 @@ Result<void> MotionRecorder::record(const Simulation& simulation, double time) {
   }
   if (!has_joints_) {
     if (auto added = add_joints(simulation); !added) return added;
+  }
+  const std::optional<SceneCamera>& camera = simulation.scene().camera;
+  if (camera) {
+    const Viewpoint view = viewpoint_at(*camera, time);
+    auto set = motion_.set_camera({view.eye, view.target, view.vertical_fov_deg * kRadians});
+    if (!set) return set;
   }
   return motion_.finish_frame();
 }

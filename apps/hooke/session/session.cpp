@@ -173,15 +173,15 @@ void Session::take(LivePtr live) {
   live_ = std::move(live);
   capture_ = {};
   insight_ = {};
-  trouble_watch_.emplace(live_->simulation());
-  state_.troubles.clear();
+  warning_watch_.emplace(live_->simulation());
+  state_.warnings.clear();
   history_->clear();
   ++state_.built;
   state_.step_seconds = static_cast<double>(live_->simulation().scene().dt);
   state_.droppable = names_to_drop(live_->simulation().scene());
   state_.step_ms = 0;
   state_.problem.clear();
-  state_.warnings.clear();
+  state_.texture_warnings.clear();
   listed_anew_ = true;
   due_ = WallClock::now();
 }
@@ -307,7 +307,7 @@ void Session::obey(const Redo& /*redo*/) {
 
 void Session::obey(const Restart& /*restart*/) {
   live_->restart();
-  trouble_watch_.emplace(live_->simulation());
+  warning_watch_.emplace(live_->simulation());
   state_.problem.clear();
 }
 
@@ -418,7 +418,7 @@ void Session::step() {
   if (std::optional<std::string> lost = live_->take_lost()) say({false, *std::move(lost)});
   smooth(state_.step_ms, std::chrono::duration<double, std::milli>(WallClock::now() - start).count());
   if (done) {
-    trouble_watch_->look(live_->simulation(), live_->report());
+    warning_watch_->look(live_->simulation(), live_->report());
     return;
   }
   state_.playing = false;
@@ -473,15 +473,15 @@ void Session::publish() {
   const bool has_changed = std::exchange(listed_anew_, false) || !state_.listed;
   if (has_changed || state_.listed->size() != simulation.objects().size())
     state_.listed = std::make_shared<const std::vector<ListedObject>>(list_of(simulation));
-  state_.troubles.clear();
-  for (const RunWarning& warning : trouble_watch_->warnings()) state_.troubles.push_back(warning.line());
+  state_.warnings.clear();
+  for (const RunWarning& warning : warning_watch_->warnings()) state_.warnings.push_back(warning.line());
   state_.moments = timeline.moments();
   state_.timeline_bytes = timeline.bytes();
   state_.timeline_interval = timeline.interval();
   state_.picture = std::make_shared<const SceneState>(capture_.capture(simulation, world.time()));
   state_.insight = insight_.make(world, wish_, world.time() - shown_time_);
   shown_time_ = world.time();
-  for (std::string& line : capture_.take_warnings()) state_.warnings.push_back(std::move(line));
+  for (std::string& line : capture_.take_warnings()) state_.texture_warnings.push_back(std::move(line));
   state_.places = places_of(simulation);
   publish(state_);
 }

@@ -141,9 +141,9 @@ struct SessionView {
   std::uint64_t timeline_interval = 0;  ///< Steps between states.
   std::string problem = {};             ///< Why it does not play on; empty for no problem.
   /// What the engine had to give up since the world was made, with what helps; a line each.
-  std::vector<std::string> troubles = {};
+  std::vector<std::string> warnings = {};
   std::shared_ptr<const History> history = {};     ///< Figures over time; it goes on.
-  std::vector<std::string> warnings = {};          ///< Textures that could not be read; all so far.
+  std::vector<std::string> texture_warnings = {};  ///< Textures that could not be read; all so far.
   std::vector<std::string> droppable = {};         ///< Names that Drop takes.
   std::shared_ptr<const SceneState> picture = {};  ///< What to draw.
   std::shared_ptr<const Insight> insight = {};     ///< What to draw on top; null for nothing.
@@ -234,7 +234,7 @@ class Session {
   SharedDocument saved_;             ///< What the file says.
   WallClock::time_point next_look_;  ///< When to look at the file again.
   SceneCapture capture_;
-  std::optional<RunWatch> trouble_watch_;
+  std::optional<RunWatch> warning_watch_;
   std::shared_ptr<History> history_ = std::make_shared<History>();
   InsightWish wish_;
   InsightMaker insight_;

@@ -67,7 +67,7 @@ void build_insight(const SessionView& view, ViewInput& input, WidgetBoxes& boxes
   if (!ImGui::CollapsingHeader("insight (keys 1 to 8)", ImGuiTreeNodeFlags_DefaultOpen)) return;
   for (std::size_t i = 0; i < insight_choices().size(); ++i) {
     const InsightChoice& choice = insight_choices()[i];
-    if (i % 3 > 0) ImGui::SameLine(static_cast<float>(i % 3) * 7.2F * ImGui::GetFontSize());
+    if (i % 3 > 0) ImGui::SameLine(static_cast<float>(i % 3) * 7.6F * ImGui::GetFontSize());
     bool shown = input.insight().*choice.shown;
     if (ImGui::Checkbox(choice.name, &shown)) input.key(ViewInput::insight_key(i));
     note_box(boxes, std::string("show ") + choice.name);

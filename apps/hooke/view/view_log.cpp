@@ -76,7 +76,7 @@ void ViewLog::write(const SessionView& view, const Eye& eye, const PictureFacts&
                {"mistakes", mistakes_of(view)},
                {"measured", measured_of(view)},
                {"insight", insight_of(view)},
-               {"troubles", view.troubles},
+               {"warnings", view.warnings},
                {"plot", facts.plot},
                {"rows", view.history ? view.history->size() : 0},
                {"boxes", facts.boxes},

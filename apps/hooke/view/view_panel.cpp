@@ -18,7 +18,7 @@ constexpr float kPanelWidth = 23;        ///< In heights of the font.
 constexpr float kTimelineHeight = 6.5F;  ///< Of the bar below, with what lies around it; the same.
 constexpr double kFreshSeconds = 6;      ///< For which the answer to a command is bright [s].
 const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
-const ImVec4 kTroubleColor = {1, 0.75F, 0.35F, 1};
+const ImVec4 kEngineWarningColor = {1, 0.75F, 0.35F, 1};
 
 void write_wrapped(const std::string& text, ImVec4 color) {
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + kPanelWidth * ImGui::GetFontSize());
@@ -78,15 +78,15 @@ void build_messages(const SessionView& view) {
 }
 
 /// What the engine had to give up, and what helps.
-void build_troubles(const SessionView& view) {
-  if (view.troubles.empty()) return;
-  const std::string title = std::to_string(view.troubles.size()) + " warnings###warnings";
+void build_warnings(const SessionView& view) {
+  if (view.warnings.empty()) return;
+  const std::string title = std::to_string(view.warnings.size()) + " warnings###warnings";
   if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
   constexpr std::size_t kMost = 6;
-  for (std::size_t i = 0; i < std::min(view.troubles.size(), kMost); ++i)
-    write_wrapped(view.troubles[i], kTroubleColor);
-  if (view.troubles.size() > kMost)
-    write_wrapped("and " + std::to_string(view.troubles.size() - kMost) + " more", kTroubleColor);
+  for (std::size_t i = 0; i < std::min(view.warnings.size(), kMost); ++i)
+    write_wrapped(view.warnings[i], kEngineWarningColor);
+  if (view.warnings.size() > kMost)
+    write_wrapped("and " + std::to_string(view.warnings.size() - kMost) + " more", kEngineWarningColor);
 }
 
 void build_help() {
@@ -159,7 +159,7 @@ void ViewPanel::build_figures(const SessionView& view, ViewInput& input, const P
   build_said(view);
   if (!view.problem.empty()) write_wrapped(view.problem, kWarningColor);
   build_messages(view);
-  build_troubles(view);
+  build_warnings(view);
   ImGui::TextDisabled("keys: ? or F1");
   ImGui::End();
 }

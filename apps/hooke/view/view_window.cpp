@@ -292,8 +292,8 @@ void take_view(Window& window) {
   if (!before || before->opened != view.opened) window.has_camera = false;
   if (view.picture && !(before && before->picture == view.picture))
     window.drawing.record(*view.picture, view.step_seconds);
-  for (; window.warned < view.warnings.size(); ++window.warned)
-    std::fprintf(stderr, "warning: %s\n", view.warnings[window.warned].c_str());
+  for (; window.warned < view.texture_warnings.size(); ++window.warned)
+    std::fprintf(stderr, "warning: %s\n", view.texture_warnings[window.warned].c_str());
 }
 
 /// Position of the picture between the last two states, 1 being the last.

@@ -39,6 +39,8 @@ struct MotionData {
   Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< [m/s^2]
   std::vector<MotionLight> lights = {};
   std::optional<std::array<float, 3>> sky = {};  ///< Luminance [cd/m^2].
+  std::vector<MotionCamera> cameras = {};        ///< One for each frame, or none.
+  std::optional<MotionCamera> camera = {};       ///< That of the frame being made.
   std::vector<MotionMaterial> materials = {};
   std::vector<MotionMesh> meshes = {};
   std::vector<MotionObject> objects = {};

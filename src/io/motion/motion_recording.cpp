@@ -291,8 +291,22 @@ void MotionRecording::set_points(std::uint32_t object, const MotionState& state,
   track.is_set = keep_last(track, finite, record);
 }
 
+Result<void> MotionRecording::set_camera(const MotionCamera& camera) {
+  const auto finite = [](DVec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  const DVec3 forward = camera.target - camera.eye;
+  const bool is_angle = camera.vertical_angle > 0 && camera.vertical_angle < std::numbers::pi_v<float>;
+  if (!finite(camera.eye) || !finite(forward) || !(length(forward) > 0) || !is_angle) {
+    return Error{ErrorCode::kOutOfRange, "camera",
+                 "needs a finite place, a target elsewhere, and 0 < vertical_angle < pi"};
+  }
+  data_->camera = camera;
+  return {};
+}
+
 Result<void> MotionRecording::finish_frame() {
   const std::size_t number = data_->frames.size();
+  if (data_->camera) data_->cameras.resize(number, data_->cameras.empty() ? *data_->camera : MotionCamera{});
+  if (data_->camera) data_->cameras.push_back(*data_->camera);
   for (MotionTrack& track : data_->tracks) {
     // What is gone does not come back: its frames are in one piece.
     const bool is_new = track.end == track.first;

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kLeastTolerance = 1e-6;  ///< What a tolerance of 0 is raised to [m].
 constexpr int kHalvings = 5;              ///< Steps by which the tolerance that suffices is narrowed down.
+constexpr double kCameraNear = 0.01;      ///< [m]
+constexpr double kCameraFar = 1000;       ///< [m]
 constexpr float kCutoff = 0.5f;           ///< Alpha of an image below which there is a hole.
 
 void add_vector(std::vector<float>& numbers, Vec3 v) {
@@ -52,6 +54,7 @@ class GlbWriter {
   void use_extension(const char* name);
   void add_materials();
   void add_lights();
+  void add_camera();
   [[nodiscard]] bool has_relief(const MotionMesh& mesh) const;
   Json primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals);
   std::size_t mesh_number(std::uint32_t mesh);
@@ -155,6 +158,39 @@ void GlbWriter::add_lights() {
     document_.json()["scenes"][0]["nodes"].push_back(document_.append("nodes", std::move(node)));
   }
   document_.json()["extensions"]["KHR_lights_punctual"]["lights"] = std::move(lights);
+}
+
+void GlbWriter::add_camera() {
+  if (data_.cameras.empty()) return;
+  const MotionCamera& first = data_.cameras[0];
+  const std::string name = names_.take("camera", "camera");
+  const std::size_t camera = document_.append(
+      "cameras",
+      {{"name", name},
+       {"type", "perspective"},
+       {"perspective", {{"yfov", first.vertical_angle}, {"znear", kCameraNear}, {"zfar", kCameraFar}}}});
+  const std::vector<std::size_t> keys = camera_keys(data_);
+  const std::vector<Quat> rotations = camera_rotations(data_, keys);
+  const std::size_t node = document_.append("nodes", {{"name", name},
+                                                      {"camera", camera},
+                                                      {"translation", in_float(first.eye)},
+                                                      {"rotation", in_float(rotations[0])}});
+  document_.json()["scenes"][0]["nodes"].push_back(node);
+  note_camera_angle(job_);
+  if (keys.size() == 1) return;
+  std::vector<float> places;
+  std::vector<float> turns;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto place = in_float(data_.cameras[keys[i]].eye);
+    const auto turn = in_float(rotations[i]);
+    places.insert(places.end(), place.begin(), place.end());
+    turns.insert(turns.end(), turn.begin(), turn.end());
+  }
+  const std::size_t times = times_of(keys);
+  add_channel(node, "translation", times, document_.add_floats(places, "VEC3", GlbTarget::kNone, false),
+              "LINEAR");
+  add_channel(node, "rotation", times, document_.add_floats(turns, "VEC4", GlbTarget::kNone, false),
+              "LINEAR");
 }
 
 bool GlbWriter::has_relief(const MotionMesh& mesh) const {
@@ -409,6 +445,7 @@ Result<void> GlbWriter::write() {
     job_.show(static_cast<double>(i + 1) / static_cast<double>(count));
   }
   add_lights();
+  add_camera();
   if (!channels_.empty()) {
     document_.append("animations", {{"name", "motion"}, {"samplers", samplers_}, {"channels", channels_}});
   }

@@ -16,6 +16,7 @@ namespace {
 
 /// Number of vertices that copies of one mesh may have together: some 5 MB of text.
 constexpr std::size_t kMostCopied = 100'000;
+constexpr double kCameraAspect = 16.0 / 9;
 constexpr int kNormalDigits = 4;
 constexpr int kPlaceDigits = 7;
 constexpr int kBodyDigits = 10;
@@ -41,6 +42,7 @@ class UsdaWriter {
   void put_way(std::size_t object);
   void put_points(std::size_t object);
   void put_presence(std::size_t object);
+  void put_camera();
   void put_joints();
   void put_extent(std::span<const Vec3> points);
   [[nodiscard]] std::vector<std::string> metadata_of(const MotionObject& object,
@@ -362,11 +364,30 @@ void UsdaWriter::put_joints() {
       " left out, as UsdPhysics has no joint of that kind; what is held moves as recorded");
 }
 
+void UsdaWriter::put_camera() {
+  if (data_.cameras.empty()) return;
+  // A film of 24 mm in height, in tenths of the unit of length as USD has it.
+  const double focal_length = 12 / std::tan(static_cast<double>(data_.cameras[0].vertical_angle) / 2);
+  text_.begin("def Camera \"camera\"");
+  text_.line("float2 clippingRange = (0.01, 1000)");
+  text_.line("float focalLength = " + usda_number(focal_length));
+  text_.line("float verticalAperture = 24");
+  text_.line("float horizontalAperture = " + usda_number(24 * kCameraAspect));
+  const std::vector<std::size_t> keys = camera_keys(data_);
+  const std::vector<Quat> rotations = camera_rotations(data_, keys);
+  put_sampled("double3 xformOp:translate", keys,
+              [&](std::size_t key) { text_.put_vector(data_.cameras[key].eye, kBodyDigits); });
+  put_sampled("quatf xformOp:orient", keys, [&](std::size_t key) { text_.put_rotation(rotations[key]); });
+  text_.line("uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]");
+  text_.end();
+  note_camera_angle(job_);
+}
+
 Result<void> UsdaWriter::write() {
   auto images = write_images(job_, job_.path);
   if (!images) return images.error();
   NameBook book(NameStyle::kIdentifier);
-  for (const char* own : {"Looks", "Lights", "Surfaces", "Meshes", "Joints", "physics_scene"})
+  for (const char* own : {"Looks", "Lights", "camera", "Surfaces", "Meshes", "Joints", "physics_scene"})
     (void)book.take(own, own);
   for (const MotionObject& object : data_.objects) prims_.push_back(book.take(object.name, "object"));
   put_header();
@@ -378,6 +399,7 @@ Result<void> UsdaWriter::write() {
   text_.end();
   put_materials(images.value());
   put_lights(text_, data_);
+  put_camera();
   choose_shared();
   put_shared_meshes();
   for (std::size_t i = 0; i < data_.objects.size() && !sink_.error(); ++i) {
