@@ -177,7 +177,9 @@ Result<void> render_film(Film& film, const RenderOptions& options) {
 Result<render::Renderer> make_renderer(const RenderOptions& options) {
   const auto context = render::Context::create_headless();
   if (!context) return context.error();
-  return render::Renderer::create(context.value(), {options.width, options.height});
+  // Thin ropes cast shadows, too, which a smaller map shows as dots.
+  return render::Renderer::create(
+      context.value(), {.width = options.width, .height = options.height, .shadow_map_size = 4096});
 }
 
 }  // namespace
