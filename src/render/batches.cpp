@@ -179,14 +179,18 @@ std::vector<Vec3> roots_of_hairs(const DrawList& list) {
   return roots;
 }
 
+/// Whether ropes are tubes, or tufts of hair with all hairs or a part of them.
+enum class RopeLook : std::uint8_t { kTubes, kTufts, kFewHairs };
+
 /// Adds all tubes, or all tufts of hair, to one mesh, each as a range of its own.
-void collect_ropes(const DrawList& list, bool hairs, MeshGeometry& mesh,
+void collect_ropes(const DrawList& list, RopeLook look, MeshGeometry& mesh,
                    const std::shared_ptr<MeshGeometry>& owner, Collector& collector) {
   mesh.vertices.clear();
   mesh.indices.clear();
   ++mesh.vertex_revision;
   ++mesh.topology_revision;
   std::vector<Item> items;
+  const bool hairs = look != RopeLook::kTubes;
   const std::vector<Vec3> roots = hairs ? roots_of_hairs(list) : std::vector<Vec3>{};
   std::uint32_t tuft = 0;
   for (const DrawRope& rope : list.ropes) {
@@ -195,7 +199,8 @@ void collect_ropes(const DrawList& list, bool hairs, MeshGeometry& mesh,
     item.batch.first_index = mesh.indices.size();
     if (hairs) {
       const float spread = tuft_spread(roots, tuft, rope.radius);
-      add_tuft(rope.points, {rope.radius, spread, tuft++}, list.camera.eye, mesh);
+      const bool few = look == RopeLook::kFewHairs;
+      add_tuft(rope.points, {rope.radius, spread, tuft++, few}, list.camera.eye, mesh);
     } else {
       add_tube(rope.points, rope.radius, mesh);
     }
@@ -246,7 +251,7 @@ SharedMeshes make_shared_meshes() {
   return shared;
 }
 
-Result<Batches> make_batches(const DrawList& list, int height_px, SharedMeshes& shared) {
+Result<Batches> make_batches(const DrawList& list, int height_px, bool fast, SharedMeshes& shared) {
   Collector collector(list.camera.eye);
   for (std::size_t i = 0; i < list.meshes.size(); ++i) {
     const DrawMesh& mesh = list.meshes[i];
@@ -255,8 +260,8 @@ Result<Batches> make_batches(const DrawList& list, int height_px, SharedMeshes& 
     if (!item) return item.error();
     collector.add(std::move(item).value(), mesh.transform);
   }
-  collect_ropes(list, false, *shared.ropes, shared.ropes, collector);
-  collect_ropes(list, true, *shared.hairs, shared.hairs, collector);
+  collect_ropes(list, RopeLook::kTubes, *shared.ropes, shared.ropes, collector);
+  collect_ropes(list, fast ? RopeLook::kFewHairs : RopeLook::kTufts, *shared.hairs, shared.hairs, collector);
   collect_spheres(list, height_px, shared, collector);
   return collector.finish();
 }

@@ -62,7 +62,8 @@ struct SharedMeshes {
 SharedMeshes make_shared_meshes();
 
 /// Makes the batches. The Error kOutOfRange names a mesh whose index range is outside of its geometry.
-Result<Batches> make_batches(const DrawList& list, int height_px, SharedMeshes& shared);
+/// `fast` draws fewer hairs.
+Result<Batches> make_batches(const DrawList& list, int height_px, bool fast, SharedMeshes& shared);
 
 /// Returns the linear light of an sRGB color.
 std::array<float, 3> linear_of(Color color);

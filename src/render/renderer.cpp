@@ -122,7 +122,7 @@ Result<LitPrograms*> lit_programs(RendererData& data, bool has_lights) {
 
 /// Brings everything to the graphics card, or returns what is wrong with it.
 Result<Prepared> prepare(RendererData& data, const DrawList& list) {
-  auto batches = make_batches(list, data.picture.height, data.shared);
+  auto batches = make_batches(list, data.picture.height, data.options.fast, data.shared);
   if (!batches) return batches.error();
   const auto programs = lit_programs(data, !list.lights.empty());
   if (!programs) return programs.error();

@@ -46,6 +46,7 @@ struct Tuft {
   float radius = 0;          ///< Of the hair that was simulated [m].
   float spread = 0;          ///< Distance of the outermost hairs from it [m].
   std::uint32_t number = 0;  ///< Tells a tuft from others, whose hairs lie otherwise.
+  bool few = false;          ///< Whether a quarter of the hairs stands for all, each twice as wide.
 };
 
 /// Adds a tuft of hairs that follow the points: strips that face the eye, with the direction along the hair

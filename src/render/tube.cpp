@@ -174,7 +174,7 @@ void add_tuft(std::span<const Vec3> points, const Tuft& tuft, Vec3 eye, MeshGeom
   if (!(radius > 0) || !std::isfinite(radius)) return;
   const std::vector<Vec3> usable = usable_points(points, radius);
   if (usable.size() < 2) return;
-  const std::vector<Station> stations = make_stations(usable, 4 * radius);
+  const std::vector<Station> stations = make_stations(usable, (tuft.few ? 8 : 4) * radius);
   std::vector<Mat3> frames;
   const Vec3 start = stations.front().tangent;
   const Vec3 aside = std::abs(start.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
@@ -185,9 +185,9 @@ void add_tuft(std::span<const Vec3> points, const Tuft& tuft, Vec3 eye, MeshGeom
   }
   const auto hairs = static_cast<std::uint32_t>(
       std::clamp(kHairsPerSpread * tuft.spread / radius, kFewestHairs, kMostHairs));
-  for (std::uint32_t hair = 0; hair < hairs; ++hair) {
-    add_hair(stations, frames, hair_place(hair, tuft.number), {tuft.spread, kHairRadius * radius}, eye,
-             geometry);
+  const float width = (tuft.few ? 2 : 1) * kHairRadius * radius;
+  for (std::uint32_t hair = 0; hair < hairs; hair += tuft.few ? 4 : 1) {
+    add_hair(stations, frames, hair_place(hair, tuft.number), {tuft.spread, width}, eye, geometry);
   }
 }
 
