@@ -65,6 +65,16 @@ bool is_vector(const std::vector<MeasuredValue>& values, std::size_t i) {
   return i + 2 < values.size() && values[i].name.ends_with(" x") && values[i + 2].name.ends_with(" z");
 }
 
+/// A number of up to three digits in at most seven characters, fewer digits where they would not do.
+std::string short_text(double number) {
+  std::array<char, 32> text = {};
+  for (int digits = 3; digits > 0; --digits) {
+    const int size = std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+    if (size <= 7) break;
+  }
+  return text.data();
+}
+
 void show_measured(const std::vector<MeasuredValue>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const MeasuredValue& value = values[i];
@@ -73,8 +83,9 @@ void show_measured(const std::vector<MeasuredValue>& values) {
       continue;
     }
     const std::string name = value.name.substr(0, value.name.size() - 2);
-    ImGui::Text("%-16s%8.3g%8.3g%8.3g %s", name.c_str(), value.value, values[i + 1].value,
-                values[i + 2].value, value.unit.c_str());
+    ImGui::Text("%-16s%8s%8s%8s %s", name.c_str(), short_text(value.value).c_str(),
+                short_text(values[i + 1].value).c_str(), short_text(values[i + 2].value).c_str(),
+                value.unit.c_str());
     i += 2;
   }
 }
