@@ -37,10 +37,11 @@ struct HandDesc {
 /// particles. Call grab or grab_along, then move_to and before_step before each step, then release.
 ///
 /// The hand is a hook of kind HookKind::kSixDegrees with three springs, from a kinematic body without
-/// contacts to the body that it holds. Of a deformable it holds a small ball of a fiftieth of the object's
-/// mass, without weight or contacts, that is hooked to the point. So all that it does is in the state of the
-/// World, and steps with a hand give the same bits as any others. What it holds stays awake while the hand
-/// moves.
+/// contacts to the body that it holds. Of a deformable, and of a body that yields (BodyDesc::yields), it
+/// holds a small ball of a fiftieth of the object's mass, without weight or contacts, that is hooked to the
+/// place. It keeps a body that becomes soft, and one that becomes rigid again. So all that it does is in the
+/// state of the World, and steps with a hand give the same bits as any others. What it holds stays awake
+/// while the hand moves.
 ///
 /// A Hand is a value. Keep a copy with each snapshot, and take the copy back when the snapshot is restored. A
 /// hand that grabbed after the snapshot was taken finds out in before_step that it holds nothing any more. A
@@ -56,7 +57,8 @@ class Hand {
   /// that is not dynamic.
   Result<void> grab(World& world, BodyId body, DVec3 at, const HandDesc& desc = {});
   /// Grabs the place of a deformable that is nearest to `at` [m], and lets go of what it held. The index of
-  /// `object` does not count. Errors also: a stale id.
+  /// `object` does not count. The soft form of a body that yields counts as that body. Errors also: a stale
+  /// id.
   Result<void> grab(World& world, PointRef object, DVec3 at, const HandDesc& desc = {});
 
   /// Says where the held place is to go, in the world [m]. At first that is where it was grabbed.
@@ -87,11 +89,12 @@ class Hand {
  private:
   [[nodiscard]] bool is_there(const World& world) const;
   Result<void> hold(World& world, const HookEnd& end, DVec3 at, const HandDesc& desc, Real mass);
+  Result<void> hold_by_ball(World& world, const HookEnd& end, DVec3 at, const HandDesc& desc, Real mass);
 
   BodyId body_ = {};      // what is held: a body ...
   PointRef object_ = {};  // ... or a place of a deformable
   BodyId handle_ = {};    // the kinematic body at the other end of the spring
-  BodyId ball_ = {};      // between the spring and a deformable; null for a body
+  BodyId ball_ = {};      // between the spring and a deformable or a body that yields; null for others
   HookId spring_ = {};
   HookId ball_hook_ = {};
   DVec3 target_ = {};

@@ -235,6 +235,26 @@ TEST_SUITE("session/live_scene") {
     CHECK(hash_of(live) == last);
   }
 
+  TEST_CASE("a body that yields is grabbed and let go, rigid and soft") {
+    LiveScene live(simulation_of(R"({"version": 1, "world": {"gravity": [0, 0, 0]}, "bodies": [
+      {"name": "tin", "kind": "dynamic", "shape": {"box": {"half_extents": [0.3, 0.3, 0.03]}}, "mass": 12,
+       "yields": {"impulse": 20, "cell": 0.1, "young_modulus": 3e6, "damping": 0.02, "yield_stress": 3e4}},
+      {"name": "ball", "kind": "dynamic", "shape": {"sphere": {"radius": 0.08}}, "mass": 6,
+       "position": [0.12, 0.05, -0.5], "velocity": [0, 0, 12]}]})"),
+                   kBudget);
+    const Ray ray = ray_at(-0.2, 0.1);
+    const BodyId tin = live.simulation().find("tin")->body;
+    CHECK(live.act(Grab{ray}).text == "grabbed 'tin'");
+    CHECK(live.act(Release{}).done);
+    for (int i = 0; i < 60 && !live.simulation().world().soft_form(tin); ++i) make_steps(live, 1);
+    REQUIRE(live.simulation().world().soft_form(tin));
+    CHECK(live.name_at(ray) == "tin");
+    CHECK(live.act(Grab{ray}).text == "grabbed 'tin'");
+    CHECK(live.held() == "tin");
+    CHECK(live.act(Release{}).text == "let go of 'tin'");
+    CHECK(live.act(Pin{ray}).text == "'tin' is soft now: pin it once it is rigid again");
+  }
+
   TEST_CASE("a hand that must let go says why") {
     LiveScene live(make_simulation(), kBudget);
     REQUIRE(live.act(Grab{ray_at(0, 0.3)}).done);

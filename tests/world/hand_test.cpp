@@ -17,6 +17,20 @@ BodyId add_ball(World& world, DVec3 at, Real mass = Real(2)) {
       {.kind = BodyKind::kDynamic, .shape = Shape::sphere(Real(0.5)), .position = at, .mass = mass}));
 }
 
+/// A plate of 12 kg across z that yields where it is hit.
+BodyId add_tin(World& world) {
+  return take(world.add_body({.kind = BodyKind::kDynamic,
+                              .shape = Shape::box({Real(0.3), Real(0.3), Real(0.03)}),
+                              .position = {0, 5, 0},
+                              .mass = Real(12),
+                              .yields = YieldsDesc{.impulse = 20,
+                                                   .cell = Real(0.1),
+                                                   .young_modulus = Real(3e6),
+                                                   .damping = Real(0.02),
+                                                   .yield_stress = Real(3e4),
+                                                   .freeze_after = Real(0.2)}}));
+}
+
 /// Steps with the hand, and calls `after` with the time since the start after each step.
 template <class After>
 void pull(World& world, Hand& hand, int steps, After&& after) {
@@ -40,8 +54,9 @@ DVec3 mean_velocity(const World& world, IdType id) {
 }
 
 /// Every kind of thing that a hand can hold, about the place (0, 5, 0), in air that does not brake.
-enum class Held { kBody, kCloth, kRope, kJelly, kShape, kParticle };
-constexpr Held kAll[] = {Held::kBody, Held::kCloth, Held::kRope, Held::kJelly, Held::kShape, Held::kParticle};
+enum class Held { kBody, kCloth, kRope, kJelly, kShape, kParticle, kTin };
+constexpr Held kAll[] = {Held::kBody,  Held::kCloth,    Held::kRope, Held::kJelly,
+                         Held::kShape, Held::kParticle, Held::kTin};
 
 void add(World& world, Held held) {
   switch (held) {
@@ -66,6 +81,9 @@ void add(World& world, Held held) {
       break;
     case Held::kParticle:
       take(world.add_particles({.particles = {{.position = {0, 5, 0}, .radius = Real(0.1)}}}));
+      break;
+    case Held::kTin:
+      add_tin(world);
       break;
   }
 }
@@ -276,6 +294,51 @@ TEST_SUITE("world/hand") {
       CHECK_FALSE(take(hand.before_step(world, kStep)));
       CHECK_FALSE(hand.holds());
     }
+  }
+
+  TEST_CASE("a body that yields stays in the hand as it becomes soft and rigid again") {
+    World world = make_world(empty_space());
+    const BodyId tin = add_tin(world);
+    Hand hand;
+    REQUIRE(take(hand.grab_along(world, {-0.2, 5.1, 4}, {0, 0, -8})));
+    CHECK(hand.body() == tin);
+    pull(world, hand, 10);
+    take(world.add_body({.kind = BodyKind::kDynamic,
+                         .shape = Shape::sphere(Real(0.08)),
+                         .position = {0.12, 5.05, -0.5},
+                         .velocity = {0, 0, 12},
+                         .mass = Real(6)}));
+    int soft = 0;
+    const DVec3 target = hand.target() + DVec3{0, 1, 0};
+    hand.move_to(target);
+    pull(world, hand, 300, [&](double) { soft += world.soft_form(tin) ? 1 : 0; });
+    CHECK(soft > 10);
+    CHECK(soft < 290);
+    CHECK(hand.body() == tin);
+    CHECK(length(hand.place(world) - target) < 0.05);
+    CHECK(length(world.center_of_mass(tin) - target) < 0.6);
+  }
+
+  TEST_CASE("a body that is soft is grabbed as that body, by a ray and by a point") {
+    World world = make_world(empty_space());
+    const BodyId tin = add_tin(world);
+    take(world.add_body({.kind = BodyKind::kDynamic,
+                         .shape = Shape::sphere(Real(0.08)),
+                         .position = {0.12, 5.05, -0.5},
+                         .velocity = {0, 0, 12},
+                         .mass = Real(6)}));
+    for (int i = 0; i < 60 && !world.soft_form(tin); ++i) REQUIRE(world.step(kStep).healthy());
+    const SolidId solid = world.soft_form(tin);
+    REQUIRE(solid);
+    Hand hand;
+    const DVec3 corner = world.positions(solid)[0];
+    REQUIRE(hand.grab(world, point(solid, 0), corner).has_value());
+    CHECK(hand.body() == tin);
+    REQUIRE(take(hand.grab_along(world, {-0.2, 5.1, 4}, {0, 0, -8})));
+    CHECK(hand.body() == tin);
+    pull(world, hand, 240);
+    CHECK_FALSE(world.soft_form(tin));
+    CHECK(length(hand.place(world) - hand.target()) < 0.05);
   }
 
   TEST_CASE("static bodies and empty air are not grabbed, and a wall hides what is behind it") {

@@ -51,6 +51,12 @@ bool is_of(const SceneObject& object, PointRef point) {
   return false;
 }
 
+/// The body that is soft because it yielded, whose point this is; null for every other point.
+BodyId body_of_soft_form(const World& world, PointRef point) {
+  if (point.kind != PointRef::Kind::kSolid) return {};
+  return world.body_of(SolidId{point.slot, point.generation, point.world});
+}
+
 Real mass_of(const World& world, const SceneObject& object) {
   // Ids of other kinds are null, and have no mass.
   return world.mass(object.body) + world.mass(object.rope) + world.mass(object.cloth) +
@@ -236,6 +242,10 @@ std::optional<LiveScene::Target> LiveScene::find(const Ray& ray) const {
   } else {
     target.point = object.value()->place.nearest;
     target.place = object.value()->place.point;
+    if (const BodyId soft = body_of_soft_form(world, target.point)) {
+      target.body = soft;
+      target.point = {};
+    }
   }
   target.name = name_of(target.body, target.point);
   return target;
@@ -255,9 +265,15 @@ Outcome LiveScene::perform(const Grab& grab) {
   const Real mass = std::max(own, kConnectedShare * connected_mass(simulation_, target->name));
   const Real weight = mass * length(world.desc().gravity);
   const HandDesc desc = {.max_force = std::max(kLeastHandForce, kHandWeights * weight), .mass = mass};
+  const SimulationSnapshot before = simulation_.snapshot();
+  const Hand hand = hand_;
   const Result<void> grabbed = target->body ? hand_.grab(world, target->body, target->place, desc)
                                             : hand_.grab(world, target->point, target->place, desc);
-  if (!grabbed) return {false, to_line(grabbed.error())};
+  if (!grabbed) {
+    (void)simulation_.restore(before);  // It is not empty.
+    hand_ = hand;
+    return {false, to_line(grabbed.error())};
+  }
   return {true, "grabbed '" + target->name + "'"};
 }
 
@@ -335,6 +351,8 @@ Outcome LiveScene::pin_body(const Target& target) {
   }
   if (simulation_.world().mass(target.body) == 0)
     return {false, "'" + target.name + "' stands still or follows its motion in any case"};
+  if (simulation_.world().soft_form(target.body))
+    return {false, "'" + target.name + "' is soft now: pin it once it is rigid again"};
   SceneHook hook;
   hook.name = new_name("pin");
   hook.desc.kind = HookKind::kFixed;

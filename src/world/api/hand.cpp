@@ -44,6 +44,12 @@ Real mass_of_object(const World& world, PointRef object) {
   return Real(0);
 }
 
+/// The body whose soft form an object is; null for every other object.
+BodyId body_of_soft_form(const World& world, PointRef object) {
+  if (object.kind != PointRef::Kind::kSolid) return {};
+  return world.body_of(SolidId{object.slot, object.generation, object.world});
+}
+
 /// Describes one of the two bodies of a hand: it is felt by nothing but hooks.
 BodyDesc body_of_hand(BodyKind kind, DVec3 at) {
   return {.kind = kind,
@@ -91,43 +97,50 @@ Result<void> Hand::grab(World& world, BodyId body, DVec3 at, const HandDesc& des
     return Error{ErrorCode::kOutOfRange, "body", "is not dynamic: nothing can pull it"};
   }
   release(world);
-  const Result<void> held = hold(world, {.body = body}, at, desc, mass);
+  // A body that yields may be points at any time, which the spring itself cannot hold.
+  Result<void> held = Error{ErrorCode::kUnsupported, "body", "is soft"};
+  if (!world.soft_form(body)) held = hold(world, {.body = body}, at, desc, mass);
+  if (!held && held.error().code == ErrorCode::kUnsupported)
+    held = hold_by_ball(world, {.body = body}, at, desc, mass);
   if (held) body_ = body;
   return held;
 }
 
 Result<void> Hand::grab(World& world, PointRef object, DVec3 at, const HandDesc& desc) {
   const base::FloatEnvironment environment;
+  if (const BodyId body = body_of_soft_form(world, object)) return grab(world, body, at, desc);
   if (const auto good = check_hand(desc); !good) return good;
   const Real mass = mass_of_object(world, object);
   if (!(mass > Real(0))) return Error{ErrorCode::kStaleId, "object", "is gone"};
   release(world);
   object.index = PointRef::kNearest;
+  const Result<void> held = hold_by_ball(world, {.point = object}, at, desc, mass);
+  if (held) object_ = object;
+  return held;
+}
+
+Result<void> Hand::hold_by_ball(World& world, const HookEnd& end, DVec3 at, const HandDesc& desc, Real mass) {
   BodyDesc ball = body_of_hand(BodyKind::kDynamic, at);
   ball.mass = kBallShare * mass;
   const Result<BodyId> added = world.add_body(ball);
   if (!added) return added.error();
-  const Result<HookId> hook = world.add_hook(
-      {.kind = HookKind::kBall, .a = {.point = object}, .b = {.body = added.value()}, .anchor = at});
-  if (!hook) {
-    world.remove(added.value());
-    return hook.error();
-  }
-  // The nearest place of the object is not quite where it was grabbed: the ball belongs there.
-  const DVec3 place = world.hook_anchors(hook.value())[0];
-  world.remove(hook.value());
   ball_ = added.value();
-  if (const auto placed = world.set_pose(ball_, {.position = place}); !placed) return placed;
-  const Result<HookId> tied = world.add_hook(
-      {.kind = HookKind::kBall, .a = {.point = object}, .b = {.body = ball_}, .anchor = place});
-  if (tied) ball_hook_ = tied.value();
-  const Result<void> held =
-      tied ? hold(world, {.body = ball_}, place, desc, mass + *ball.mass) : Result<void>(tied.error());
-  if (held) {
-    object_ = object;
-  } else {
-    release(world);
+  const auto tie = [&](DVec3 place) {
+    return world.add_hook({.kind = HookKind::kBall, .a = end, .b = {.body = ball_}, .anchor = place});
+  };
+  Result<HookId> tied = tie(at);
+  DVec3 place = at;
+  if (tied) {
+    // The nearest place of the object is not quite where it was grabbed: the ball belongs there.
+    place = world.hook_anchors(tied.value())[0];
+    world.remove(tied.value());
+    const Result<void> placed = world.set_pose(ball_, {.position = place});
+    tied = placed ? tie(place) : Result<HookId>(placed.error());
   }
+  if (tied) ball_hook_ = tied.value();
+  Result<void> held =
+      tied ? hold(world, {.body = ball_}, place, desc, mass + *ball.mass) : Result<void>(tied.error());
+  if (!held) release(world);
   return held;
 }
 
