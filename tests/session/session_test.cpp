@@ -319,6 +319,19 @@ TEST_SUITE("session/live_scene") {
     REQUIRE(live.undo().done);
     CHECK(live.simulation().find("jelly") != nullptr);
   }
+
+  TEST_CASE("the figure of contacts says that it is the force of bodies alone") {
+    LiveScene live(simulation_of(R"({"version": 1,
+      "bodies": [{"name": "ground", "shape": {"half_space": {}}},
+                 {"name": "low", "kind": "dynamic", "shape": {"box": {"half_extents": [0.1, 0.1, 0.1]}},
+                  "mass": 1, "position": [0, 0.1, 0]}]})"),
+                   kBudget);
+    make_steps(live, 60);
+    double force = 0;
+    for (const MeasuredValue& value : measure(live.simulation(), "low"))
+      if (value.name == "force of bodies") force = value.value;
+    CHECK(force == doctest::Approx(9.81).epsilon(0.01));
+  }
 }
 
 TEST_SUITE("session/session") {
@@ -448,6 +461,19 @@ TEST_SUITE("session/session") {
     CHECK(slowly.count() > 5 * 4.0 / 60);
     view = done(Restart{});
     CHECK(view->step <= 1);
+  }
+
+  TEST_CASE("a change of the scene forgets what was undone before it, and is itself done again") {
+    Session session("", loader_of(kScene), {.playing = false});
+    const auto done = [&](Command command) {
+      const std::uint64_t number = session.post(std::move(command));
+      return session.wait_for([&](const SessionView& v) { return v.commands >= number; }, kLong);
+    };
+    REQUIRE(done(Action(Shoot{ray_at(-3, 3)}))->said->done);
+    CHECK(done(Undo{})->redo_count == 1);
+    REQUIRE(done(Change{"bodies[1].mass", "3"})->said->done);
+    CHECK(done(Undo{})->redo_count == 1);
+    CHECK(done(Redo{})->said->text == "done again: change of the scene");
   }
 
   TEST_CASE("it stops for good at its time") {

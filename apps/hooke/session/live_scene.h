@@ -38,6 +38,8 @@ class LiveScene {
   /// Goes on to where the last undo was called, and does again what it took back. A new action forgets what
   /// was undone.
   Outcome redo();
+  /// Forgets what was undone, as a new action does.
+  void forget_undone() { undone_.clear(); }
   /// Goes back to the start, and forgets everything but edits of the scene.
   void restart();
 

@@ -23,10 +23,11 @@ void add_body(Values& values, const World& world, BodyId body) {
   values.push_back({"speed", "m/s", static_cast<double>(length(velocity))});
   values.push_back({"spin", "rad/s", static_cast<double>(length(world.angular_velocity(body)))});
   values.push_back({"kinetic energy", "J", world.energy(body).kinetic});
+  // What ropes, cloths and solids press with is known only where reports_contacts asks for it.
   double pressed = 0;
   for (const BodyContact& contact : world.body_contacts(body))
     pressed += static_cast<double>(contact.normal_force);
-  values.push_back({"contact force", "N", pressed});
+  values.push_back({"force of bodies", "N", pressed});
   values.push_back({"asleep", "", world.asleep(body) ? 1.0 : 0.0});
 }
 

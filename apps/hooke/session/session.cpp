@@ -188,6 +188,7 @@ void Session::take(LivePtr live) {
 
 /// Shows another world, and keeps the one before for undo.
 void Session::replace(LivePtr live) {
+  live_->forget_undone();
   past_.push_back(std::move(live_));
   const auto bytes = [&] {
     return std::accumulate(past_.begin(), past_.end(), std::size_t{0},
