@@ -287,14 +287,16 @@ void reset_if_not_finite(state::Manifold& m) {
   m.twist_impulse = m.largest_impulse = Real(0);
 }
 
-/// Does the same for a hook.
+/// Does the same for a hook, and for the forces that it tells.
 void reset_if_not_finite(state::Hook& hook) {
   Real sum = hook.last_impulse + hook.last_angular_impulse;
   for (const Real impulse : hook.row_impulse) sum += impulse;
   const bool finite = std::isfinite(sum) && is_finite(hook.impulse) && is_finite(hook.angular_impulse) &&
                       is_finite(hook.impulse_sum) && is_finite(hook.angular_impulse_sum) &&
-                      std::isfinite(hook.energy_debt) && std::isfinite(hook.spring_energy);
+                      is_finite(hook.force) && is_finite(hook.torque) && std::isfinite(hook.energy_debt) &&
+                      std::isfinite(hook.spring_energy);
   if (finite) return;
+  hook.force = hook.torque = {};
   hook.row_impulse = {};
   hook.impulse = hook.angular_impulse = hook.impulse_sum = hook.angular_impulse_sum = {};
   hook.last_impulse = hook.last_angular_impulse = Real(0);

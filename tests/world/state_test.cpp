@@ -226,6 +226,7 @@ TEST_SUITE("world/state") {
                                           .mass = Real(10),
                                           .contact = {.friction = Real(0)}})
                                .value();
+      HookId hook;
       if (hooked) {
         const BodyId other = world
                                  .add_body({.kind = BodyKind::kDynamic,
@@ -233,7 +234,7 @@ TEST_SUITE("world/state") {
                                             .position = {0, 1, 0},
                                             .mass = Real(1)})
                                  .value();
-        take(world.add_hook({.a = {.body = crate}, .b = {.body = other}, .anchor = {0, 0.7, 0}}));
+        hook = take(world.add_hook({.a = {.body = crate}, .b = {.body = other}, .anchor = {0, 0.7, 0}}));
       }
       Real force = Real(0);
       take(world.add_force_law([&](BodyForceView& bodies) {
@@ -247,6 +248,8 @@ TEST_SUITE("world/state") {
       CHECK(quarantined(30) == 0);
       force = std::numeric_limits<Real>::quiet_NaN();
       CHECK(quarantined(1) > 0);
+      CHECK(std::isfinite(length(world.hook_force(hook).force)));
+      CHECK(std::isfinite(length(world.hook_force(hook).torque)));
       force = Real(0);
       CHECK(quarantined(10) == 0);
       if (hooked) continue;
