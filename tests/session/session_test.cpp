@@ -453,6 +453,8 @@ TEST_SUITE("session/session") {
     CHECK_FALSE(view->holding);
     CHECK(view->timeline_bytes > 0);
     CHECK(view->timeline_bytes <= view->timeline_budget);
+    CHECK(done(SetSpeed{std::nan("")})->speed == kLeastSpeed);
+    CHECK(done(SetSpeed{1e300})->speed == kMostSpeed);
     view = done(SetSpeed{0.25});
     const auto slow = std::chrono::steady_clock::now();
     view = done(Play{true});

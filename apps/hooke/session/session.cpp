@@ -275,7 +275,8 @@ void Session::obey(const MakeSteps& steps) {
 }
 
 void Session::obey(const SetSpeed& speed) {
-  state_.speed = std::clamp(speed.speed, kLeastSpeed, kMostSpeed);
+  // No number at all counts as the least.
+  state_.speed = speed.speed >= kLeastSpeed ? std::min(speed.speed, kMostSpeed) : kLeastSpeed;
   due_ = WallClock::now();
 }
 
