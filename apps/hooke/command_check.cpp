@@ -17,7 +17,7 @@ int command_check(Arguments arguments) {
                  "Also by this method of the laboratory; all: which method reaches which goal");
   app.add_option("--turned", options.turned,
                  "Turn every world by a random rotation of this seed, and move it: the answers stay the same")
-      ->check(CLI::PositiveNumber);
+      ->check(one_or_more());
   app.add_flag("--ground-truth", options.ground_truth,
                "Instead: how far the solver is from SUNDIALS in scenes without a closed form");
   app.add_flag("--list", options.list, "Only print ids and titles");

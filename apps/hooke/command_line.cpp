@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -109,6 +110,10 @@ void add_number(CLI::App& app, const std::string& name, std::optional<double>& n
     return word + bounds;
   };
   app.add_option(name, number, help)->check(CLI::Validator(check, ""));
+}
+
+CLI::Validator one_or_more() {
+  return CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<std::uint32_t>::max()});
 }
 
 void add_seconds(CLI::App& app, std::optional<double>& seconds, const std::string& help) {

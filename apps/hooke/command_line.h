@@ -10,7 +10,8 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace hooke::app {
 
@@ -62,6 +63,9 @@ void apply(const SceneOverrides& overrides, WorldDesc& world);
 /// a number.
 void add_number(CLI::App& app, const std::string& name, std::optional<double>& number, double low,
                 double high, const std::string& help);
+
+/// Accepts whole numbers from 1 on. The library's own check of them names a bound of 309 digits.
+CLI::Validator one_or_more();
 
 /// Adds --seconds, within the range that a scene may have.
 void add_seconds(CLI::App& app, std::optional<double>& seconds, const std::string& help);

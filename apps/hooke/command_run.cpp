@@ -48,14 +48,14 @@ void describe(CLI::App& app, RunOptions& options) {
       ->excludes(stepper);
   app.add_flag("--hash", options.hash, "Print only the hash of the last state")->excludes(stepper);
   app.add_option("--hash-every", options.hash_every, "Print step and hash after every so many steps")
-      ->check(CLI::PositiveNumber)
+      ->check(one_or_more())
       ->excludes(stepper);
   app.add_flag("--settle", options.settle, "Bring the scene to rest first, as hooke settle does")
       ->excludes(stepper);
   app.add_option(
          "--turned", options.turned,
          "Turn the whole scene by a random rotation of this seed, and move it: what it promises stays")
-      ->check(CLI::PositiveNumber)
+      ->check(one_or_more())
       ->excludes(stepper);
   app.footer(
       "Exit code 1 if an expectation of the scene failed. Expectations later than --seconds do not count.\n"

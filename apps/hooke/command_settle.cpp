@@ -110,7 +110,7 @@ void add_options(CLI::App& app, SettleOptions& options) {
   app.add_option("--out", options.out, "Write the model as it lies in a pose: .obj .glb .stl .3ds");
   app.add_option("--pose", options.pose, "Number of that pose, 1 for the most probable")
       ->needs("--out")
-      ->check(CLI::PositiveNumber);
+      ->check(one_or_more());
   app.footer(
       "The probability is that of slow rolling from a random orientation; --drops counts what a drop "
       "does.\n\n"
