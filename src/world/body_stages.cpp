@@ -287,8 +287,9 @@ void reset_if_not_finite(state::Manifold& m) {
   m.twist_impulse = m.largest_impulse = Real(0);
 }
 
-/// Does the same for a hook, and for the forces that it tells.
+/// Does the same for a hook, and for the forces and values that it tells.
 void reset_if_not_finite(state::Hook& hook) {
+  for (double& value : hook.value) value = std::isfinite(value) ? value : 0;
   Real sum = hook.last_impulse + hook.last_angular_impulse;
   for (const Real impulse : hook.row_impulse) sum += impulse;
   const bool finite = std::isfinite(sum) && is_finite(hook.impulse) && is_finite(hook.angular_impulse) &&

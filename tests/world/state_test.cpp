@@ -227,6 +227,7 @@ TEST_SUITE("world/state") {
                                           .contact = {.friction = Real(0)}})
                                .value();
       HookId hook;
+      HookId string;
       if (hooked) {
         const BodyId other = world
                                  .add_body({.kind = BodyKind::kDynamic,
@@ -235,6 +236,11 @@ TEST_SUITE("world/state") {
                                             .mass = Real(1)})
                                  .value();
         hook = take(world.add_hook({.a = {.body = crate}, .b = {.body = other}, .anchor = {0, 0.7, 0}}));
+        string = take(world.add_hook({.kind = HookKind::kDistance,
+                                      .a = {.body = crate},
+                                      .b = {.body = other},
+                                      .anchor = {0, 0.5, 0},
+                                      .anchor_b = DVec3{0, 1, 0}}));
       }
       Real force = Real(0);
       take(world.add_force_law([&](BodyForceView& bodies) {
@@ -250,6 +256,7 @@ TEST_SUITE("world/state") {
       CHECK(quarantined(1) > 0);
       CHECK(std::isfinite(length(world.hook_force(hook).force)));
       CHECK(std::isfinite(length(world.hook_force(hook).torque)));
+      CHECK(std::isfinite(world.hook_value(string)));
       force = Real(0);
       CHECK(quarantined(10) == 0);
       if (hooked) continue;
