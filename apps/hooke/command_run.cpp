@@ -41,6 +41,9 @@ void describe(CLI::App& app, RunOptions& options) {
       "--stepper", options.stepper,
       "Run the laboratory instead: a name from hooke compare --help, auto, or declared for what the "
       "scene's accuracy chooses");
+  stepper->check(CLI::Validator(
+      [](const std::string& name) { return name.empty() ? std::string("needs a name") : std::string(); },
+      ""));
   app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
       ->needs(stepper);
   app.add_option("--report", options.page,

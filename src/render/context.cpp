@@ -99,7 +99,10 @@ Result<Context> Context::create_window(const std::string& title, int width, int 
   const std::string where = "window";
   if (width <= 0 || height <= 0) return Error{ErrorCode::kOutOfRange, where, "the size must be positive"};
   if (glfwInit() != GLFW_TRUE)
-    return Error{ErrorCode::kUnsupported, where, "there is no display to open it on"};
+    return Error{
+        ErrorCode::kUnsupported, where,
+        "there is no display that answers to open it on: set DISPLAY, or use what needs none, such as "
+        "hooke render"};
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

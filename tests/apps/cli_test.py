@@ -238,6 +238,7 @@ class Run(Program):
         lines = self.hooke("run", self.scene(FALLING), "--hash-every", 20)[0].split("\n")
         self.assertEqual([line.split(" ")[0] for line in lines[:3]], ["20", "40", "60"])
         self.assertEqual(lines[2].split(" ")[1], self.hooke("run", "scene.json", "--hash")[0].strip())
+        self.assertIn("needs a name", self.hooke("run", "scene.json", "--stepper", "", code=2)[1])
         for number in (0, -1, "99999999999999999999"):
             _, errors = self.hooke("run", "scene.json", "--hash-every", number, code=2)
             self.assertIn("1 to 4294967295", errors)

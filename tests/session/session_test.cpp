@@ -235,6 +235,22 @@ TEST_SUITE("session/live_scene") {
     CHECK(hash_of(live) == last);
   }
 
+  TEST_CASE("an edit of gravity keeps workers that the command line set") {
+    auto said = std::make_shared<SceneDocument>();
+    said->scene = make_simulation().scene();
+    Simulation simulation = make_simulation();
+    REQUIRE(simulation.world().set_workers(2));
+    LiveScene live(std::move(simulation), kBudget, said);
+    auto edited = std::make_shared<SceneDocument>(*said);
+    edited->scene.world.gravity = {0, -5, 0};
+    REQUIRE(live.act(Edit{edited, "gravity"}).done);
+    CHECK(live.simulation().world().desc().workers == 2);
+    edited = std::make_shared<SceneDocument>(*edited);
+    edited->scene.world.workers = 3;
+    REQUIRE(live.act(Edit{edited, "workers"}).done);
+    CHECK(live.simulation().world().desc().workers == 3);
+  }
+
   TEST_CASE("a body that yields is grabbed and let go, rigid and soft") {
     LiveScene live(simulation_of(R"({"version": 1, "world": {"gravity": [0, 0, 0]}, "bodies": [
       {"name": "tin", "kind": "dynamic", "shape": {"box": {"half_extents": [0.3, 0.3, 0.03]}}, "mass": 12,

@@ -415,7 +415,9 @@ Outcome LiveScene::perform(const Edit& edit) {
   const SimulationSnapshot before = simulation_.snapshot();
   Result<void> done = world.set_gravity(wanted.gravity);
   if (done) done = world.set_wind(wanted.wind);
-  if (done) done = world.set_workers(wanted.workers);
+  // The command line may have set other workers than the document says.
+  const Scene& said = document_ ? document_->scene : simulation_.scene();
+  if (done && wanted.workers != said.world.workers) done = world.set_workers(wanted.workers);
   if (!done) {
     (void)simulation_.restore(before);  // It is not empty.
     return {false, to_line(done.error())};
