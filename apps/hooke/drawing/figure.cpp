@@ -338,9 +338,9 @@ void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& 
 
 void add_loads(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
   for (const FigureLoad& load : figure.loads) {
-    if (load.point < place.points.size())
-      list.spheres.push_back({place.points[load.point], load.radius, iron_finish().color,
-                              surface_of(iron_finish(), render::Shading::kSolid)});
+    if (load.point >= place.points.size()) continue;
+    list.spheres.push_back({place.points[load.point], load.radius, iron_finish().color,
+                            surface_of(iron_finish(), render::Shading::kSolid)});
   }
 }
 

@@ -157,12 +157,7 @@ Result<void> MotionRecorder::record(const Simulation& simulation, double time) {
   if (!has_joints_) {
     if (auto added = add_joints(simulation); !added) return added;
   }
-  const std::optional<SceneCamera>& camera = simulation.scene().camera;
-  if (camera) {
-    const Viewpoint view = viewpoint_at(*camera, time);
-    auto set = motion_.set_camera({view.eye, view.target, view.vertical_fov_deg * kRadians});
-    if (!set) return set;
-  }
+  if (auto set = set_camera(simulation.scene(), time); !set) return set;
   return motion_.finish_frame();
 }
 
@@ -296,6 +291,13 @@ Result<std::uint32_t> MotionRecorder::add_body(const Simulation& simulation, con
                            .shape = is_part ? object.parts[i].shape : object.shape});
   }
   return motion_.add_object(std::move(body));
+}
+
+/// Sets the camera of this frame, if the scene has one.
+Result<void> MotionRecorder::set_camera(const Scene& scene, double time) {
+  if (!scene.camera) return {};
+  const Viewpoint view = viewpoint_at(*scene.camera, time);
+  return motion_.set_camera({view.eye, view.target, view.vertical_fov_deg * kRadians});
 }
 
 /// Adds the sun, the sky and the lights, as bright as a picture of the scene shows them.

@@ -71,6 +71,7 @@ class MotionRecorder {
   Result<std::uint32_t> add_piece_mesh(const FigureSolid& solid, std::vector<std::uint32_t> materials);
   Result<Entry> add_points(const SceneObject& object, const Figure& figure, const Taken& now);
   Result<std::uint32_t> add_plane(std::uint32_t material);
+  Result<void> set_camera(const Scene& scene, double time);
   Result<void> add_lights(const Scene& scene);
   Result<void> add_joints(const Simulation& simulation);
 

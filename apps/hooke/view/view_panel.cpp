@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <imgui.h>
 #include <optional>
 #include <string>
@@ -109,10 +110,9 @@ void build_help() {
 
 void build_cost(const PictureCost& pictures) {
   const double rate = pictures.milliseconds > 0 ? 1000 / pictures.milliseconds : 0.0;
-  if (pictures.scale < 1)
-    ImGui::Text("pictures %10.1f /s, drawn at %.0f %%", rate, 100 * pictures.scale);
-  else
-    ImGui::Text("pictures %10.1f /s", rate);
+  const std::string part =
+      pictures.scale < 1 ? ", drawn at " + std::to_string(std::lround(100 * pictures.scale)) + " %" : "";
+  ImGui::Text("pictures %10.1f /s%s", rate, part.c_str());
 }
 
 /// Moves a panel back whose title was dragged out of the window, or is left outside of a smaller one.
