@@ -98,11 +98,10 @@ Result<Context> Context::create_headless() {
 Result<Context> Context::create_window(const std::string& title, int width, int height) {
   const std::string where = "window";
   if (width <= 0 || height <= 0) return Error{ErrorCode::kOutOfRange, where, "the size must be positive"};
-  if (glfwInit() != GLFW_TRUE)
-    return Error{
-        ErrorCode::kUnsupported, where,
-        "there is no display that answers to open it on: set DISPLAY, or use what needs none, such as "
-        "hooke render"};
+  constexpr const char* kNoDisplay =
+      "there is no display that answers to open it on: set DISPLAY, or use what needs none, such as hooke "
+      "render";
+  if (glfwInit() != GLFW_TRUE) return Error{ErrorCode::kUnsupported, where, kNoDisplay};
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -104,6 +104,17 @@ void solve_passes(Rows& rows, Division division, int grain, state::Particles& pa
   }
 }
 
+/// Lets go of what does not stay where it touches the solids of a system, and where it `may_hold`, holds what
+/// does again. Returns whether anything changed.
+bool renew_touched(state::Tables& tables, const std::vector<int>& pressing, Real h, bool may_hold,
+                   solver::StiffSystem& system) {
+  bool any = solver::renew_stiff_rows(may_hold, system);
+  any = solver::renew_ties(system) || any;
+  for (solver::TetrahedronBlocks* part : system.parts)
+    any = solver::renew_pressed_points(pressing, tables, h, may_hold, *part) || any;
+  return any;
+}
+
 /// Solves the rows of solids at once, with what presses on their points and with each other. What does not
 /// stay where it touches is let go, and the solution goes on from there.
 void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing, Real h, Division division,
@@ -133,10 +144,7 @@ void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing,
     // Where directions run out, contacts that pull or rub too hard are let go once more.
     is_last = !solver::may_solve_again(system);
     const bool may_hold = !is_last && round < solver::kMostPressedRounds;
-    bool any = solver::renew_stiff_rows(may_hold, system);
-    any = solver::renew_ties(system) || any;
-    for (solver::TetrahedronBlocks* part : system.parts)
-      any = solver::renew_pressed_points(pressing, tables, h, may_hold, *part) || any;
+    const bool any = renew_touched(tables, pressing, h, may_hold, system);
     if (!solver::sharpen(system) && !any) break;
     is_new = any;  // Otherwise directions go on from where they were.
   }
