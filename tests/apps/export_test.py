@@ -197,26 +197,36 @@ class Files(Export):
     def test_the_camera_goes_along_its_path_and_looks_at_its_target(self):
         path = [{"time": 0, "eye": [4, 2, 0], "target": [0, 1, 0]}, {"time": 1, "eye": [0, 2, 4], "target": [0, 0, 0]}]
         scene = MIXED | {"camera": {"fov_deg": 40, "path": path}}
-        self.export("x.glb", scene=scene)
+        self.export("x.glb", "--tolerance", 0, scene=scene)
         glb = Glb(self.folder / "x.glb")
         camera, = glb.json["cameras"]
         self.assertAlmostEqual(camera["perspective"]["yfov"], math.radians(40), places=6)
         number, = (i for i, node in enumerate(glb.json["nodes"]) if "camera" in node)
-        self.export("x.usda", scene=scene)
+        self.export("x.usda", "--tolerance", 0, scene=scene)
         usda = Usda(self.folder / "x.usda")
         tall, focal = (float(usda.prims["/World/camera"][key]) for key in ("verticalAperture", "focalLength"))
         self.assertAlmostEqual(2 * math.atan(tall / 2 / focal), math.radians(40), places=5)
-        ways = dict((way, glb.accessor(sampler["output"])) for way, sampler in glb.channels(number))
+        samplers = dict(glb.channels(number))
         for frame, ends in ((0, path[0]), (30, path[1])):
             eye = usda.value("/World/camera", "xformOp:translate", frame)
             w, *xyz = usda.value("/World/camera", "xformOp:orient", frame)
-            for place, turn in ((ways["translation"][frame], ways["rotation"][frame]), (eye, [*xyz, w])):
+            way = [glb.value(samplers[path], frame / 30, path) for path in ("translation", "rotation")]
+            for place, turn in (way, (eye, [*xyz, w])):
                 self.assertLess(distance(place, ends["eye"]), 1e-5)
                 forward = rotate(turn, [0, 0, -distance(ends["eye"], ends["target"])])
                 self.assertLess(distance([a + b for a, b in zip(place, forward)], ends["target"]), 1e-5)
                 # The horizon is level, and up is up.
                 self.assertAlmostEqual(rotate(turn, [1, 0, 0])[1], 0, places=6)
                 self.assertGreater(rotate(turn, [0, 1, 0])[1], 0.5)
+
+    def test_a_camera_that_passes_its_target_keeps_its_direction_there(self):
+        path = [{"time": 0, "eye": [0, 1, 2], "target": [0, 1, 0]}, {"time": 1, "eye": [0, 1, -2], "target": [0, 1, 0]}]
+        self.export("x.glb", "--fps", 60, "--tolerance", 0, scene=MIXED | {"camera": {"path": path}})
+        glb = Glb(self.folder / "x.glb")
+        number, = (i for i, node in enumerate(glb.json["nodes"]) if "camera" in node)
+        rotation = dict(glb.channels(number))["rotation"]
+        for time, forward in ((0, -1), (0.5, -1), (1, 1)):
+            self.assertAlmostEqual(rotate(glb.value(rotation, time, "rotation"), [0, 0, -1])[2], forward, places=5)
 
     def test_point_caches_hold_the_vertices_of_the_obj_files_with_z_up(self):
         self.export("seq/frame_%04d.obj")

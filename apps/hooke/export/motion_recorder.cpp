@@ -293,10 +293,12 @@ Result<std::uint32_t> MotionRecorder::add_body(const Simulation& simulation, con
   return motion_.add_object(std::move(body));
 }
 
-/// Sets the camera of this frame, if the scene has one.
+/// Sets the camera of this frame, if the scene has one. Where it passes what it looks at it keeps its
+/// direction.
 Result<void> MotionRecorder::set_camera(const Scene& scene, double time) {
   if (!scene.camera) return {};
   const Viewpoint view = viewpoint_at(*scene.camera, time);
+  if (view.eye == view.target) return {};
   return motion_.set_camera({view.eye, view.target, view.vertical_fov_deg * kRadians});
 }
 

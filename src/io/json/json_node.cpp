@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace hooke::io {
 
@@ -89,6 +90,10 @@ const JsonNode* JsonNode::find(std::string_view wanted) const {
   const auto found =
       std::find_if(children.begin(), children.end(), [&](const JsonNode& c) { return c.key == wanted; });
   return found == children.end() ? nullptr : &*found;
+}
+
+JsonNode* JsonNode::find(std::string_view wanted) {
+  return const_cast<JsonNode*>(std::as_const(*this).find(wanted));
 }
 
 JsonNode& JsonNode::add(std::string_view new_key, JsonNode value) {

@@ -22,6 +22,7 @@ struct JsonNode {
 
   /// Returns the child of an object with this key, or null.
   [[nodiscard]] const JsonNode* find(std::string_view wanted) const;
+  [[nodiscard]] JsonNode* find(std::string_view wanted);
   /// Appends a child with a key and returns it.
   JsonNode& add(std::string_view new_key, JsonNode value);
   /// Appends an element and returns it.

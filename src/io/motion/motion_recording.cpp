@@ -186,14 +186,13 @@ void MotionRecording::set_gravity(Vec3 gravity) {
 }
 
 Result<void> MotionRecording::add_light(MotionLight light) {
-  const auto finite = [](DVec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   const DVec3 direction = vector_cast<double>(light.direction);
   const bool is_spot = light.kind == MotionLight::Kind::kSpot;
   const bool is_cone = light.inner_angle >= 0 && light.inner_angle < light.outer_angle &&
                        light.outer_angle <= std::numbers::pi_v<float> / 2;
   const bool is_color = std::all_of(light.color.begin(), light.color.end(), is_share);
-  if (!finite(light.position) || !finite(direction) || length(direction) == 0 || !is_color ||
-      !is_luminance(light.strength) || (is_spot && !is_cone)) {
+  if (!hooke::is_finite(light.position) || !hooke::is_finite(direction) || length(direction) == 0 ||
+      !is_color || !is_luminance(light.strength) || (is_spot && !is_cone)) {
     return Error{
         ErrorCode::kOutOfRange, "light '" + light.name + "'",
         "needs a finite position, a direction that is not zero, colors in [0, 1], a strength of 0 or more, "
@@ -292,10 +291,9 @@ void MotionRecording::set_points(std::uint32_t object, const MotionState& state,
 }
 
 Result<void> MotionRecording::set_camera(const MotionCamera& camera) {
-  const auto finite = [](DVec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   const DVec3 forward = camera.target - camera.eye;
   const bool is_angle = camera.vertical_angle > 0 && camera.vertical_angle < std::numbers::pi_v<float>;
-  if (!finite(camera.eye) || !finite(forward) || !(length(forward) > 0) || !is_angle) {
+  if (!hooke::is_finite(camera.eye) || !hooke::is_finite(forward) || !(length(forward) > 0) || !is_angle) {
     return Error{ErrorCode::kOutOfRange, "camera",
                  "needs a finite place, a target elsewhere, and 0 < vertical_angle < pi"};
   }
@@ -305,8 +303,7 @@ Result<void> MotionRecording::set_camera(const MotionCamera& camera) {
 
 Result<void> MotionRecording::finish_frame() {
   const std::size_t number = data_->frames.size();
-  if (data_->camera) data_->cameras.resize(number, data_->cameras.empty() ? *data_->camera : MotionCamera{});
-  if (data_->camera) data_->cameras.push_back(*data_->camera);
+  if (data_->camera) data_->cameras.resize(number + 1, *data_->camera);
   for (MotionTrack& track : data_->tracks) {
     // What is gone does not come back: its frames are in one piece.
     const bool is_new = track.end == track.first;

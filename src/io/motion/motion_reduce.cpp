@@ -1,5 +1,7 @@
 #include "io/motion/motion_reduce.h"
 
+#include "hooke/geometry.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -111,6 +113,15 @@ bool blends_pass(std::span<const Quat> rotations, std::size_t from, std::size_t 
   return true;
 }
 
+/// Returns the rotation of a camera of glTF and USD, which looks along -z and has y up.
+Quat rotation_of_camera(const MotionCamera& camera) {
+  const DVec3 forward = normalize(camera.target - camera.eye);
+  const DVec3 up = std::abs(forward.y) < 0.99999 ? DVec3{0, 1, 0} : DVec3{0, 0, 1};
+  const DVec3 right = normalize(cross(forward, up));
+  const Quaternion<double> q = quaternion_from(Matrix3<double>{right, cross(right, forward), -forward});
+  return {static_cast<Real>(q.x), static_cast<Real>(q.y), static_cast<Real>(q.z), static_cast<Real>(q.w)};
+}
+
 }  // namespace
 
 std::vector<std::size_t> reduce_places(std::span<const DVec3> places, double tolerance) {
@@ -158,6 +169,20 @@ BodyWay read_way(const MotionData& data, std::size_t object, double tolerance) {
   // The farthest vertex moves by the angle times its distance.
   way.rotation_keys =
       reduce_rotations(way.rotations, std::min(tolerance / 2 / std::max(track.radius, 1e-9), 1.0));
+  return way;
+}
+
+BodyWay camera_way(const MotionData& data, double tolerance) {
+  BodyWay way;
+  double farthest = 0;
+  for (const MotionCamera& camera : data.cameras) {
+    way.places.push_back(camera.eye);
+    way.rotations.push_back(rotation_of_camera(camera));
+    farthest = std::max(farthest, length(camera.target - camera.eye));
+  }
+  align_signs(way.rotations);
+  way.place_keys = reduce_places(way.places, tolerance / 2);
+  way.rotation_keys = reduce_rotations(way.rotations, std::min(tolerance / 2 / farthest, 1.0));
   return way;
 }
 

@@ -24,7 +24,8 @@ namespace hooke::io {
 /// blending takes the short way between equal signs only.
 void align_signs(std::vector<Quat>& rotations);
 
-/// A BodyWay is the way of a body and the keys that suffice for it, from the first frame with the body on.
+/// A BodyWay is the way of a body or of the camera, and the keys that suffice for it, from its first frame
+/// on.
 struct BodyWay {
   std::vector<DVec3> places;  ///< [m]
   std::vector<Quat> rotations;
@@ -35,6 +36,10 @@ struct BodyWay {
 /// Reads the way of a body. Places and rotations have half of the tolerance each, so that no vertex of the
 /// body is off by more than all of it [m].
 [[nodiscard]] BodyWay read_way(const MotionData& data, std::size_t object, double tolerance);
+
+/// Returns the way of the camera of glTF and USD, which looks along -z and has y up. What it looks at is off
+/// by no more than the tolerance [m]. There must be cameras.
+[[nodiscard]] BodyWay camera_way(const MotionData& data, double tolerance);
 
 /// Returns keys as numbers of frames of the recording.
 [[nodiscard]] std::vector<std::size_t> from_frame(std::size_t first, std::vector<std::size_t> keys);

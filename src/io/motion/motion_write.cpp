@@ -1,7 +1,5 @@
 #include "io/motion/motion_write.h"
 
-#include "hooke/geometry.h"
-
 #include "base/float_environment.h"
 #include "io/model/model_write.h"
 #include "io/motion/motion_names.h"
@@ -25,14 +23,6 @@ namespace io {
 namespace {
 
 constexpr std::size_t kBufferSize = std::size_t{1} << 20;
-
-Quat rotation_of_camera(const MotionCamera& camera) {
-  const DVec3 forward = normalize(camera.target - camera.eye);
-  const DVec3 up = std::abs(forward.y) < 0.99999 ? DVec3{0, 1, 0} : DVec3{0, 0, 1};
-  const DVec3 right = normalize(cross(forward, up));
-  const Quaternion<double> q = quaternion_from(Matrix3<double>{right, cross(right, forward), -forward});
-  return {static_cast<Real>(q.x), static_cast<Real>(q.y), static_cast<Real>(q.z), static_cast<Real>(q.w)};
-}
 
 }  // namespace
 
@@ -205,27 +195,6 @@ Quaternion<double> rotation_of_light(Vec3 direction) {
   if (to.z > 0.999999) return {0, 1, 0, 0};  // half a turn about y
   const DVec3 middle = cross(DVec3{0, 0, -1}, to);
   return normalize(Quaternion<double>{middle.x, middle.y, middle.z, 1 - to.z});
-}
-
-std::vector<std::size_t> camera_keys(const MotionData& data) {
-  const auto same = [&](const MotionCamera& other) {
-    return other.eye == data.cameras[0].eye && other.target == data.cameras[0].target;
-  };
-  std::vector<std::size_t> keys = {0};
-  if (std::all_of(data.cameras.begin(), data.cameras.end(), same)) return keys;
-  for (std::size_t i = 1; i < data.cameras.size(); ++i) keys.push_back(i);
-  return keys;
-}
-
-std::vector<Quat> camera_rotations(const MotionData& data, std::span<const std::size_t> keys) {
-  std::vector<Quat> rotations;
-  for (const std::size_t key : keys) {
-    Quat q = rotation_of_camera(data.cameras[key]);
-    const Quat before = rotations.empty() ? q : rotations.back();
-    if (q.x * before.x + q.y * before.y + q.z * before.z + q.w * before.w < 0) q = {-q.x, -q.y, -q.z, -q.w};
-    rotations.push_back(q);
-  }
-  return rotations;
 }
 
 void note_camera_angle(const MotionJob& job) {

@@ -100,12 +100,9 @@ struct MotionJob {
 /// Returns the smallest rotation from -z, along which lights of glTF and USD shine, to `direction`.
 [[nodiscard]] Quaternion<double> rotation_of_light(Vec3 direction);
 
-/// Returns the frames between which a camera goes straight: all of them, or the first where it stands still.
-[[nodiscard]] std::vector<std::size_t> camera_keys(const MotionData& data);
-
-/// Returns the rotations at some frames of a camera of glTF and USD, which looks along -z and has y up.
-/// Neighbors have one sign.
-[[nodiscard]] std::vector<Quat> camera_rotations(const MotionData& data, std::span<const std::size_t> keys);
+/// What is nearer to a camera or farther from it than these [m] is not seen.
+inline constexpr double kCameraNear = 0.01;
+inline constexpr double kCameraFar = 1000;
 
 /// Notes that a format keeps the angle of the first frame, if the angle changes.
 void note_camera_angle(const MotionJob& job);

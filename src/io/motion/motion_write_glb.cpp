@@ -16,8 +16,6 @@ namespace {
 
 constexpr double kLeastTolerance = 1e-6;  ///< What a tolerance of 0 is raised to [m].
 constexpr int kHalvings = 5;              ///< Steps by which the tolerance that suffices is narrowed down.
-constexpr double kCameraNear = 0.01;      ///< [m]
-constexpr double kCameraFar = 1000;       ///< [m]
 constexpr float kCutoff = 0.5f;           ///< Alpha of an image below which there is a hole.
 
 void add_vector(std::vector<float>& numbers, Vec3 v) {
@@ -59,7 +57,7 @@ class GlbWriter {
   Json primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals);
   std::size_t mesh_number(std::uint32_t mesh);
   void add_body(std::size_t object, Json node);
-  void add_way(std::size_t object, std::size_t node, const BodyWay& way);
+  void add_way(std::size_t first, std::size_t node, const BodyWay& way);
   void add_points(std::size_t object, Json node);
   void add_targets(std::size_t object, Json& mesh, std::span<const std::size_t> keys);
   std::vector<std::size_t> choose_keys(std::size_t object);
@@ -162,35 +160,20 @@ void GlbWriter::add_lights() {
 
 void GlbWriter::add_camera() {
   if (data_.cameras.empty()) return;
-  const MotionCamera& first = data_.cameras[0];
+  const float angle = data_.cameras[0].vertical_angle;
   const std::string name = names_.take("camera", "camera");
   const std::size_t camera = document_.append(
-      "cameras",
-      {{"name", name},
-       {"type", "perspective"},
-       {"perspective", {{"yfov", first.vertical_angle}, {"znear", kCameraNear}, {"zfar", kCameraFar}}}});
-  const std::vector<std::size_t> keys = camera_keys(data_);
-  const std::vector<Quat> rotations = camera_rotations(data_, keys);
+      "cameras", {{"name", name},
+                  {"type", "perspective"},
+                  {"perspective", {{"yfov", angle}, {"znear", kCameraNear}, {"zfar", kCameraFar}}}});
+  const BodyWay way = camera_way(data_, job_.options.tolerance);
   const std::size_t node = document_.append("nodes", {{"name", name},
                                                       {"camera", camera},
-                                                      {"translation", in_float(first.eye)},
-                                                      {"rotation", in_float(rotations[0])}});
+                                                      {"translation", in_float(way.places[0])},
+                                                      {"rotation", in_float(way.rotations[0])}});
   document_.json()["scenes"][0]["nodes"].push_back(node);
+  add_way(0, node, way);
   note_camera_angle(job_);
-  if (keys.size() == 1) return;
-  std::vector<float> places;
-  std::vector<float> turns;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const auto place = in_float(data_.cameras[keys[i]].eye);
-    const auto turn = in_float(rotations[i]);
-    places.insert(places.end(), place.begin(), place.end());
-    turns.insert(turns.end(), turn.begin(), turn.end());
-  }
-  const std::size_t times = times_of(keys);
-  add_channel(node, "translation", times, document_.add_floats(places, "VEC3", GlbTarget::kNone, false),
-              "LINEAR");
-  add_channel(node, "rotation", times, document_.add_floats(turns, "VEC4", GlbTarget::kNone, false),
-              "LINEAR");
 }
 
 bool GlbWriter::has_relief(const MotionMesh& mesh) const {
@@ -298,12 +281,11 @@ void GlbWriter::add_body(std::size_t object, Json node) {
   const std::size_t number = document_.append("nodes", std::move(node));
   document_.json()["scenes"][0]["nodes"].push_back(number);
   add_presence(object, number);
-  add_way(object, number, way);
+  add_way(data_.tracks[object].first, number, way);
 }
 
 /// What rests needs no channel: the node has its place.
-void GlbWriter::add_way(std::size_t object, std::size_t node, const BodyWay& way) {
-  const std::size_t first = data_.tracks[object].first;
+void GlbWriter::add_way(std::size_t first, std::size_t node, const BodyWay& way) {
   std::vector<float> values;
   if (way.place_keys.size() > 1) {
     for (const std::size_t key : way.place_keys) {

@@ -39,7 +39,7 @@ class UsdaWriter {
   void put_bindings(const MotionMesh& mesh);
   void put_body(std::size_t object);
   void put_pieces(const MotionObject& body);
-  void put_way(std::size_t object);
+  void put_way(std::size_t first, const BodyWay& way);
   void put_points(std::size_t object);
   void put_presence(std::size_t object);
   void put_camera();
@@ -257,9 +257,7 @@ void UsdaWriter::put_presence(std::size_t object) {
   text_.end_samples();
 }
 
-void UsdaWriter::put_way(std::size_t object) {
-  const std::size_t first = data_.tracks[object].first;
-  const BodyWay way = read_way(data_, object, job_.options.tolerance);
+void UsdaWriter::put_way(std::size_t first, const BodyWay& way) {
   put_sampled("double3 xformOp:translate", from_frame(first, way.place_keys),
               [&](std::size_t key) { text_.put_vector(way.places[key - first], kBodyDigits); });
   put_sampled("quatf xformOp:orient", from_frame(first, way.rotation_keys),
@@ -309,7 +307,7 @@ void UsdaWriter::put_body(std::size_t object) {
     text_.line("rel material:binding:physics = </World/Surfaces/surface_" +
                std::to_string(surfaces_.at({body.friction, body.restitution})) + ">");
   }
-  put_way(object);
+  put_way(data_.tracks[object].first, read_way(data_, object, job_.options.tolerance));
   put_presence(object);
   put_pieces(body);
   text_.end();
@@ -369,16 +367,11 @@ void UsdaWriter::put_camera() {
   // A film of 24 mm in height, in tenths of the unit of length as USD has it.
   const double focal_length = 12 / std::tan(static_cast<double>(data_.cameras[0].vertical_angle) / 2);
   text_.begin("def Camera \"camera\"");
-  text_.line("float2 clippingRange = (0.01, 1000)");
+  text_.line("float2 clippingRange = (" + usda_number(kCameraNear) + ", " + usda_number(kCameraFar) + ")");
   text_.line("float focalLength = " + usda_number(focal_length));
   text_.line("float verticalAperture = 24");
   text_.line("float horizontalAperture = " + usda_number(24 * kCameraAspect));
-  const std::vector<std::size_t> keys = camera_keys(data_);
-  const std::vector<Quat> rotations = camera_rotations(data_, keys);
-  put_sampled("double3 xformOp:translate", keys,
-              [&](std::size_t key) { text_.put_vector(data_.cameras[key].eye, kBodyDigits); });
-  put_sampled("quatf xformOp:orient", keys, [&](std::size_t key) { text_.put_rotation(rotations[key]); });
-  text_.line("uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]");
+  put_way(0, camera_way(data_, job_.options.tolerance));
   text_.end();
   note_camera_angle(job_);
 }

@@ -54,12 +54,6 @@ const JsonNode* find_record(const std::string& name) {
   return found == library().materials.end() ? nullptr : &found->second;
 }
 
-JsonNode* find_child(JsonNode& node, std::string_view key) {
-  for (JsonNode& child : node.children)
-    if (node.kind == JsonNode::Kind::kObject && child.key == key) return &child;
-  return nullptr;
-}
-
 std::string text_of(const JsonNode& object, std::string_view key) {
   const JsonNode* child = object.find(key);
   return child != nullptr && child->kind == JsonNode::Kind::kString ? child->text : std::string();
@@ -86,22 +80,22 @@ void add_missing(JsonNode& object, std::string_view key, const JsonNode& value, 
 template <class Act>
 void for_each_object(JsonNode& root, std::string_view kind, const Act& act) {
   const auto in = [&](JsonNode& objects) {
-    JsonNode* list = find_child(objects, kind);
+    JsonNode* list = objects.find(kind);
     if (list == nullptr || list->kind != JsonNode::Kind::kArray) return;
     for (JsonNode& object : list->children)
       if (object.kind == JsonNode::Kind::kObject) act(object);
   };
   in(root);
-  JsonNode* timeline = find_child(root, "timeline");
+  JsonNode* timeline = root.find("timeline");
   if (timeline == nullptr) return;
   for (JsonNode& event : timeline->children)
-    if (JsonNode* added = find_child(event, "add"); added != nullptr) in(*added);
+    if (JsonNode* added = event.find("add"); added != nullptr) in(*added);
 }
 
 /// Returns the parts of a body's shape, or null.
 JsonNode* parts_of(JsonNode& body) {
-  JsonNode* shape = find_child(body, "shape");
-  JsonNode* parts = shape != nullptr ? find_child(*shape, "parts") : nullptr;
+  JsonNode* shape = body.find("shape");
+  JsonNode* parts = shape != nullptr ? shape->find("parts") : nullptr;
   return parts != nullptr && parts->kind == JsonNode::Kind::kArray ? parts : nullptr;
 }
 
@@ -119,7 +113,7 @@ class Taking {
           for (JsonNode& part : parts->children) use(part, "material");
       });
     }
-    if (JsonNode* pairs = find_child(root_, "material_pairs"); pairs != nullptr) {
+    if (JsonNode* pairs = root_.find("material_pairs"); pairs != nullptr) {
       for (JsonNode& pair : pairs->children) {
         use(pair, "a");
         use(pair, "b");
@@ -135,7 +129,7 @@ class Taking {
  private:
   /// Completes materials that are like one of the library.
   void complete_own() {
-    JsonNode* materials = find_child(root_, "materials");
+    JsonNode* materials = root_.find("materials");
     if (materials == nullptr || materials->kind != JsonNode::Kind::kObject) return;
     for (JsonNode& material : materials->children) {
       if (material.kind != JsonNode::Kind::kObject) continue;
@@ -157,7 +151,7 @@ class Taking {
     const std::string name = text_of(object, key);
     const JsonNode* record = find_record(name);
     if (record == nullptr) return;
-    JsonNode* materials = find_child(root_, "materials");
+    JsonNode* materials = root_.find("materials");
     if (materials != nullptr && materials->kind != JsonNode::Kind::kObject) return;
     if (materials != nullptr && materials->find(name) != nullptr) return;
     const std::uint32_t offset = object.find(key)->offset;
@@ -272,7 +266,7 @@ class Taking {
   }
 
   void add_pair(const JsonNode& record, const std::string& a, const std::string& b) {
-    JsonNode* pairs = find_child(root_, "material_pairs");
+    JsonNode* pairs = root_.find("material_pairs");
     if (pairs == nullptr) pairs = &root_.add("material_pairs", make_array());
     const JsonNode& materials = *root_.find("materials");
     const JsonNode& first = *materials.find(a);

@@ -5,7 +5,6 @@
 #include "io/scene/scene_table.h"
 #include "process/new_file.h"
 
-#include <algorithm>
 #include <string_view>
 
 namespace hooke {
@@ -14,12 +13,6 @@ namespace {
 
 using io::JsonNode;
 using io::Kind;
-
-JsonNode* find_child(JsonNode& node, std::string_view key) {
-  const auto found = std::find_if(node.children.begin(), node.children.end(),
-                                  [&](const JsonNode& child) { return child.key == key; });
-  return found == node.children.end() ? nullptr : &*found;
-}
 
 /// Adds to an object the keys that only `completed` has, with their defaults. What has none is left out.
 void state_defaults(const Kind& kind, JsonNode& object, const JsonNode& completed) {
@@ -35,13 +28,13 @@ void state_defaults(const Kind& kind, JsonNode& object, const JsonNode& complete
 
 /// The same for the elements of a list, or for the values of an object of which each has a name.
 void state_defaults_in(const Kind& kind, JsonNode& tree, const JsonNode& completed, std::string_view key) {
-  JsonNode* list = find_child(tree, key);
+  JsonNode* list = tree.find(key);
   if (list == nullptr) return;
   const JsonNode& complete = *completed.find(key);
   for (std::size_t i = 0; i < list->children.size(); ++i) {
     JsonNode& object = list->children[i];
     state_defaults(kind, object, complete.children[i]);
-    if (JsonNode* shape = find_child(object, "shape"); shape != nullptr)
+    if (JsonNode* shape = object.find("shape"); shape != nullptr)
       state_defaults_in(io::kind_of<ScenePart>(), *shape, *complete.children[i].find("shape"), "parts");
   }
 }
@@ -60,10 +53,10 @@ void state_what_differs_from_the_library(JsonNode& scene) {
   io::take_from_library(completed);
   state_defaults_in(io::kind_of<SceneMaterial>(), scene, completed, "materials");
   state_defaults_of_objects(scene, completed);
-  JsonNode* timeline = find_child(scene, "timeline");
+  JsonNode* timeline = scene.find("timeline");
   if (timeline == nullptr) return;
   for (std::size_t i = 0; i < timeline->children.size(); ++i) {
-    JsonNode* added = find_child(timeline->children[i], "add");
+    JsonNode* added = timeline->children[i].find("add");
     if (added == nullptr) continue;
     state_defaults_of_objects(*added, *completed.find("timeline")->children[i].find("add"));
   }
