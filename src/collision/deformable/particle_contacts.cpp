@@ -9,6 +9,7 @@
 #include "collision/distance/protrusion_gap.h"
 #include "collision/distance/shape_gap.h"
 #include "geometry/box.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
