@@ -25,8 +25,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr Target kTargets[] = {
-    {"api", try_api}, {"scenes", try_scene},  {"json", try_json},     {"flat", try_flat},
-    {"bsp", try_bsp}, {"meshes", try_meshes}, {"import", try_import}, {"rooms", try_room},
+    {"api", try_api},       {"scenes", try_scene}, {"json", try_json},
+    {"flat", try_flat},     {"bsp", try_bsp},      {"meshes", try_meshes},
+    {"import", try_import}, {"rooms", try_room},   {"hands", try_hands},
 };
 
 constexpr int kFailed = 3;  // how a child ends that found something
@@ -221,7 +222,7 @@ int usage() {
       "hooke_fuzz TARGET [--seed A] [--count N] [--seconds S] [--patience S] [--memory GIB] [--failures N]\n"
       "                  [--scenes DIR] [--corpus DIR] [--importer FILE] [--save FILE] [--only PARTS]\n"
       "                  [--figure NAME] [--above X] [--verbose | --minimize]\n"
-      "Targets: api scenes json flat bsp meshes import rooms\n"
+      "Targets: api scenes json flat bsp meshes import rooms hands\n"
       "--verbose tries one seed in this process and says each step: for a debugger. --minimize finds the "
       "parts of a\n"
       "trial that fail together, --only keeps those. --figure asks for one figure of a room alone, as "

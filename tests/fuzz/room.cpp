@@ -133,11 +133,16 @@ std::string add_lump(RoomMaker& maker, DVec3 place, double size, double mass) {
 }
 
 Scene make_room(Random& random) {
-  test::SceneBuilder room;
-  room.scene.title = "Random room";
-  room.scene.seconds = 2 + 0.5 * random.integer(0, 2);
+  const double seconds = 2 + 0.5 * random.integer(0, 2);
   const int columns = random.integer(1, 3);
   const int rows = random.integer(1, 2);
+  return make_room(random, columns, rows, seconds);
+}
+
+Scene make_room(Random& random, int columns, int rows, double seconds) {
+  test::SceneBuilder room;
+  room.scene.title = "Random room";
+  room.scene.seconds = seconds;
   const DVec3 half = {0.5 * kCell * columns, 0, 0.5 * kCell * rows};
   const double floor = add_walls(random, room, half);
   const double light = random.pick<double>({0.1, 0.3, 1, 3, 10});

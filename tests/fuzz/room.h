@@ -50,5 +50,7 @@ void make_jelly(RoomMaker& maker);
 
 /// Makes a room. The same numbers make the same room on every machine.
 [[nodiscard]] Scene make_room(Random& random);
+/// Makes a room of so many cells, whose scene runs for `seconds` [s].
+[[nodiscard]] Scene make_room(Random& random, int columns, int rows, double seconds);
 
 }  // namespace hooke::fuzz

@@ -70,6 +70,7 @@ void try_bsp(Random& random);
 void try_meshes(Random& random);
 void try_import(Random& random);
 void try_room(Random& random);
+void try_hands(Random& random);
 
 // What the loaders must do with any bytes; shared with libFuzzer.
 void check_json(std::string text);
