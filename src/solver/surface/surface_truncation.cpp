@@ -48,9 +48,9 @@ class Truncation {
   void part_pairs() {
     int rounds = 0;
     for (bool near = measure_pairs_first(c_, group_); near; near = measure_pairs(c_, group_)) {
-      if (rounds == kCorrectionRounds) return hold_back();
+      if (rounds == kCorrectionRounds || work_ > kMostCorrectionWork) return hold_back();
       list_hot();
-      while (rounds < kCorrectionRounds) {
+      while (rounds < kCorrectionRounds && work_ <= kMostCorrectionWork) {
         ++rounds;
         if (!correct_hot()) break;
       }
@@ -220,6 +220,7 @@ class Truncation {
     SolidPiece& piece = *mover.piece;
     const DVec3 impulse = vector_cast<double>(push);
     const state::Rows rows = tables_.objects[piece.object].particles;
+    work_ += rows.count / 4;
     for (std::uint32_t p = rows.first; p < rows.end(); ++p) {
       if (!group_.pieces.has(tables_, piece, p)) continue;
       const DVec3 place = vector_cast<double>(particles_.position[p].x);
@@ -243,7 +244,9 @@ class Truncation {
     const Real least = pair.block->least[pair.lane];
     for (int i = 0; i < kTries; ++i) {
       const Critical critical = critical_of(pair);
+      ++work_;
       if (!(critical.gap < least)) return i > 0;
+      work_ += 8;
       const Vec3 n = pair.normal();
       const Vec3 place =
           pair.first_side == 1 ? x(critical.first) : Real(0.5) * (x(critical.first) + x(critical.second));
@@ -335,7 +338,8 @@ class Truncation {
   state::Tables& tables_;
   state::Particles& particles_;
   Vec3 displacement_;
-  DVec3 gained_ = {};  ///< Momentum that corrections have given the group, times h [kg m].
+  std::size_t work_ = 0;  ///< Of corrections, as `kMostCorrectionWork` counts it.
+  DVec3 gained_ = {};     ///< Momentum that corrections have given the group, times h [kg m].
 };
 
 /// How far the group moves in this substep.
