@@ -33,10 +33,14 @@ auto batch_key(const Item& item) {
                     b.index_count, b.two_sided, b.mirrored, b.casts_shadow);
 }
 
+/// Copies of one mesh are drawn from near to far: what they hide of each other is not shaded.
 bool drawn_before(const Item& a, const Item& b) {
   if (a.batch.is_in_order || b.batch.is_in_order) return a.batch.is_in_order && !b.batch.is_in_order;
   const bool blends = a.batch.alpha == AlphaMode::kBlend && b.batch.alpha == AlphaMode::kBlend;
-  return blends ? a.eye_distance > b.eye_distance : batch_key(a) < batch_key(b);
+  if (blends) return a.eye_distance > b.eye_distance;
+  const auto key_a = batch_key(a);
+  const auto key_b = batch_key(b);
+  return key_a == key_b ? a.eye_distance < b.eye_distance : key_a < key_b;
 }
 
 std::array<float, 12> rows_of(const Mat4& a) {

@@ -117,6 +117,21 @@ void draw_light_maps(const RendererData& data, const Prepared& prepared, const L
   }
 }
 
+void draw_opaque_depths(const RendererData& data, const Prepared& prepared) {
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  for (const bool two_sided : {false, true}) {
+    if (two_sided)
+      glDisable(GL_CULL_FACE);
+    else
+      glEnable(GL_CULL_FACE);
+    draw_depths(data, prepared, data.programs.depth, data.programs.holed_depth, [&](const Batch& batch) {
+      return batch.alpha == AlphaMode::kOpaque && batch.shading == Shading::kSolid && !batch.is_in_order &&
+             batch.two_sided == two_sided;
+    });
+  }
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 void draw_occlusion(const RendererData& data, const Prepared& prepared, const std::array<float, 4>* plane,
                     float pixels_per_length) {
   const OcclusionTarget& target = *data.occlusion;

@@ -287,6 +287,9 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
   glClear(GL_DEPTH_BUFFER_BIT);
   bind_light(data);
   glCullFace(GL_BACK);
+  // In software, depths are quicker than light on what something else hides: it saves a twentieth of the
+  // time.
+  if (data.options.fast) draw_opaque_depths(data, prepared);
   draw_meshes(data, prepared, false);
   if (plane != nullptr) draw_ground(data, prepared.programs->ground, *list.ground, *plane);
   draw_sky(data);

@@ -102,6 +102,9 @@ void draw_shadow_map(const RendererData& data, const Prepared& prepared);
 void draw_light_maps(const RendererData& data, const Prepared& prepared, const LightPlan& plan,
                      FrameUniforms frame);
 
+/// Draws depths of opaque solids from the eye, as draw_picture will, and no color.
+void draw_opaque_depths(const RendererData& data, const Prepared& prepared);
+
 /// Draws depths from the eye at half the size, and from them how much of the sky each pixel sees. `ground`
 /// may be null; `plane` is that of ground_plane.
 void draw_occlusion(const RendererData& data, const Prepared& prepared, const std::array<float, 4>* plane,

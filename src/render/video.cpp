@@ -149,10 +149,14 @@ struct VideoData {
     film.reset();
   }
 
-  /// Waits for ffmpeg; returns whether it ended without an error.
-  bool wait_for_end() {
+  /// Waits for ffmpeg; returns why it failed, or nothing if it ended without an error.
+  std::optional<std::string> wait_for_end() {
     const int status = ffmpeg.wait();
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+    std::string why = read_messages();
+    if (!why.empty()) return why;
+    if (WIFSIGNALED(status)) return "signal " + std::string(::strsignal(WTERMSIG(status)));
+    return "exit status " + std::to_string(WEXITSTATUS(status));
   }
 
   /// Returns the beginning of ffmpeg's messages.
@@ -244,10 +248,9 @@ Result<void> VideoWriter::add(const Image& frame) {
   const int number = data.frame_count++;
   if (data.format == Format::kPictures) return write_png(frame, numbered(data.name, number));
   if (send_all(data.input.number(), frame.pixels.data(), frame.pixels.size())) return {};
-  // ffmpeg has ended or is about to; its last message is the reason.
   data.input.close();
-  data.wait_for_end();
-  return data.fail(ErrorCode::kFileNotWritable, "ffmpeg ended early: " + data.read_messages());
+  const std::string why = data.wait_for_end().value_or("it says no reason");
+  return data.fail(ErrorCode::kFileNotWritable, "ffmpeg ended early: " + why);
 }
 
 Result<void> VideoWriter::finish() {
@@ -257,9 +260,8 @@ Result<void> VideoWriter::finish() {
   data.failed = true;  // Nothing can be added from here on.
   if (data.format == Format::kPictures) return {};
   data.input.close();
-  if (!data.wait_for_end()) {
-    return data.fail(ErrorCode::kFileNotWritable, "ffmpeg failed: " + data.read_messages());
-  }
+  if (const auto why = data.wait_for_end())
+    return data.fail(ErrorCode::kFileNotWritable, "ffmpeg failed: " + *why);
   const auto named = data.film->finish();
   if (!named) return data.fail(named.error().code, named.error().message);
   return {};

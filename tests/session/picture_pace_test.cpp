@@ -44,7 +44,7 @@ TEST_SUITE("session/picture_pace") {
   TEST_CASE("objects can be told apart in a small window, and a large one is drawn in time") {
     PicturePace pace;
     Time now = PicturePace::Clock::now();
-    CHECK(scale_after(pace, now, 1000, 100) * 1280 >= 720);
+    CHECK(scale_after(pace, now, 1000, 100) * 1280 >= 700);
     CHECK(scale_after(pace, now, 500, 100, 3840) < 0.35);
   }
 

@@ -7,8 +7,8 @@ namespace hooke::app {
 
 namespace {
 
-constexpr std::array<double, 8> kScales = {1, 0.85, 0.7, 0.6, 0.5, 0.4, 0.32, 0.25};
-constexpr double kLeastWidth = 720;  ///< Of a picture [px].
+constexpr std::array<double, 9> kScales = {1, 0.85, 0.7, 0.6, 0.55, 0.5, 0.4, 0.32, 0.25};
+constexpr double kLeastWidth = 700;  ///< Of a picture [px].
 constexpr double kSlow = 46;         ///< Longer pictures get fewer pixels [ms].
 constexpr double kQuick = 40;      ///< Pixels are added as long as a picture is expected to stay below [ms].
 constexpr std::size_t kCount = 7;  ///< Pictures whose median is looked at.

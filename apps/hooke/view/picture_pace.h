@@ -25,7 +25,7 @@ class PicturePace {
   [[nodiscard]] bool is_due(Clock::time_point now) const;
 
   /// Width and height of that picture in those of a window of that width, 0.25 to 1. It is as small only as
-  /// leaves 720 pixels beside one another, on which objects can still be told apart.
+  /// leaves 700 pixels beside one another, on which objects can still be told apart.
   double scale(Clock::time_point now, int window_width);
 
   /// Says that it was drawn at the time for which is_due and scale were asked, and how long that took [ms].

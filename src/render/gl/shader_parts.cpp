@@ -97,11 +97,47 @@ vec3 sky_irradiance(vec3 n) {
 )";
 }
 
+std::string corner_part() {
+  return R"(
+#ifdef FAST
+// What changes evenly over a triangle is computed at its corners.
+out vec3 sun_place;   // in the sun's map, see sun_visibility
+out vec3 even_light;  // the sky's light on one side of the surface is even_light + odd_light, on the other the
+out vec3 odd_light;   // difference
+void light_corner(vec3 point, vec3 normal) {
+  vec3 n = normal * inversesqrt(max(dot(normal, normal), 1e-30));
+  float n_dot_l = dot(n, sun_direction.xyz);
+  float slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+  float side = n_dot_l < 0.0 ? -1.0 : 1.0;
+  vec3 moved = point + side * n * shadow_info.x * (0.4 + 1.4 * slope);
+  sun_place = (shadow_matrix * vec4(moved, 1.0)).xyz;
+  vec3 here = sky_irradiance(n);
+  vec3 there = sky_irradiance(-n);
+  even_light = 0.5 * (here + there);
+  odd_light = 0.5 * (here - there);
+}
+#endif
+)";
+}
+
 namespace {
 
 constexpr const char* kShadowPart = R"(
 uniform sampler2DShadow shadow_map;
 uniform sampler2D shadow_depth;
+#ifdef CORNERS
+in vec3 sun_place;
+in vec3 even_light;
+in vec3 odd_light;
+#endif
+// The sky's light on the side of the surface that is seen, or on the other one.
+vec3 irradiance_on(vec3 n, float side) {
+#ifdef CORNERS
+  return max(even_light + (gl_FrontFacing ? side : -side) * odd_light, vec3(0.0));
+#else
+  return sky_irradiance(side * n);
+#endif
+}
 
 // Each point of a disk is the golden angle further around than the one before, and a little further out: they
 // are spread evenly (Vogel 1979).
@@ -187,9 +223,13 @@ float soft_shadow(vec3 place, float slope, float n_dot_l, bool is_open) {
 // How much of the sun reaches a point. The point is moved along the normal by what the filter reaches over, more
 // at grazing light, so that a surface does not shadow itself.
 float sun_visibility(vec3 point, vec3 normal, float n_dot_l) {
+#ifdef CORNERS
+  vec3 place = sun_place;
+#else
   float slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
   vec3 moved = point + normal * shadow_info.x * (0.4 + 1.4 * slope);
   vec3 place = (shadow_matrix * vec4(moved, 1.0)).xyz;
+#endif
   bool inside = all(greaterThan(place.xy, vec2(0.0))) && all(lessThan(place.xy, vec2(1.0)));
   bool is_open = n_dot_l > 0.0 && inside && shadow_info.z > 0.5;
 #ifdef FAST
@@ -305,7 +345,7 @@ Light light_at(vec3 f0, float roughness, vec3 n, vec3 v, vec3 point) {
   float facing = clamp(n_dot_l, 0.0, 1.0);
   vec3 sun = sun_color.rgb * facing * sun_visibility(point, n, n_dot_l) * (0.6 + 0.4 * seen);
   Light light;
-  light.inner = sky_irradiance(n) * seen + sun;
+  light.inner = irradiance_on(n, 1.0) * seen + sun;
   vec3 mirrored = mirrored_sky(reflect(-v, n), roughness) * mirrored_share(f0, roughness, n_dot_v);
   light.outer = mirrored * seen + sun * highlight_of(sun_direction.xyz, f0, roughness, n, v, facing, n_dot_v);
   int sources = LIGHTS;
@@ -332,6 +372,7 @@ std::string reflection_part() {
 
 std::string mesh_inputs_part() {
   return R"(
+invariant gl_Position;  // depths are compared with those of other shaders
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;

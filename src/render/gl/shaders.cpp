@@ -26,6 +26,9 @@ void main() {
   finish = surface;
   glass = clear;
   gl_Position = view_projection * vec4(point, 1.0);
+#ifdef FAST
+  light_corner(point, surface_normal);
+#endif
 }
 )";
 
@@ -163,15 +166,15 @@ void main() {
   vec3 sun = sun_color.rgb * facing * sun_visibility(point, side * n, facing) * (0.5 + 0.5 * seen);
   float n_dot_v = clamp(dot(n, v), 0.02, 1.0);
   vec3 through = 0.3 * albedo.rgb;
-  vec3 color = albedo.rgb * (sky_irradiance(n) * seen + (side > 0.0 ? sun : vec3(0.0)));
-  color += through * (0.5 * sky_irradiance(-n) * seen + (side > 0.0 ? vec3(0.0) : sun));
+  vec3 color = albedo.rgb * (irradiance_on(n, 1.0) * seen + (side > 0.0 ? sun : vec3(0.0)));
+  color += through * (0.5 * irradiance_on(n, -1.0) * seen + (side > 0.0 ? vec3(0.0) : sun));
   // Smooth threads, such as silk's, shine; rough ones have a rim of light.
   float gloss = side > 0.0 ? 1.0 : 0.0;
   color += gloss * sun * highlight_of(sun_direction.xyz, vec3(0.03), made.y, n, v, facing, n_dot_v);
   float rim = 1.0 - n_dot_v;
   rim *= rim * rim;
   vec3 fibers = mix(vec3(1.0), albedo.rgb, 0.6);
-  color += finish.z * rim * fibers * (0.7 * sky_irradiance(n) * seen + 0.5 * sun);
+  color += finish.z * rim * fibers * (0.7 * irradiance_on(n, 1.0) * seen + 0.5 * sun);
   int sources = LIGHTS;
   for (int i = 0; i < sources; ++i) {
     Source source = source_at(i, point);
@@ -283,9 +286,11 @@ void main() {
 }  // namespace
 
 ShaderSource mesh_shader(MeshLook look, MeshImages images, LitKind kind) {
-  std::string fragment = lit_version(kind) + frame_part() + color_part() + sky_part() + shadow_part() +
-                         reflection_part() + kMeshFragmentInputs + albedo_part(images != MeshImages::kNone) +
-                         detail_part(images == MeshImages::kAll);
+  // A hair has no surface.
+  const bool by_corners = kind.fast && look != MeshLook::kHair;
+  std::string fragment = lit_version(kind) + (by_corners ? "#define CORNERS\n" : "") + frame_part() +
+                         color_part() + sky_part() + shadow_part() + reflection_part() + kMeshFragmentInputs +
+                         albedo_part(images != MeshImages::kNone) + detail_part(images == MeshImages::kAll);
   switch (look) {
     case MeshLook::kSolid:
       fragment += kSolidFragment;
@@ -303,7 +308,9 @@ ShaderSource mesh_shader(MeshLook look, MeshImages images, LitKind kind) {
       fragment += kHairFragment;
       break;
   }
-  return {shader_version() + frame_part() + mesh_inputs_part() + kMeshVertex, fragment};
+  return {shader_version(by_corners) + frame_part() + sky_part() + corner_part() + mesh_inputs_part() +
+              kMeshVertex,
+          fragment};
 }
 
 ShaderSource depth_shader(DepthFrom from, bool holed) {
