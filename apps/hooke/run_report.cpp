@@ -44,6 +44,14 @@ constexpr RouteName kRouteNames[] = {
     {"coupled_groups", &RouteCounts::coupled_groups},
 };
 
+/// Name of the object that has this point; empty for none.
+std::string name_of(const Simulation& simulation, PointRef point) {
+  for (const SceneObject& object : simulation.objects()) {
+    if (has_point(object, point)) return object.name;
+  }
+  return {};
+}
+
 }  // namespace
 
 StepTimes step_times(const std::vector<double>& step_ms) {
@@ -241,6 +249,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"energy", {{"start", json_of(record.start)}, {"end", json_of(end.energy)}}},
       {"momentum", {end.momentum.x, end.momentum.y, end.momentum.z}},
       {"largest_stretch", end.largest_stretch},
+      {"most_stretched", name_of(simulation, end.most_stretched)},
       {"mean_stretch", end.mean_stretch},
       {"largest_penetration", end.largest_penetration},
       {"largest_gap", end.largest_gap},
@@ -277,8 +286,10 @@ std::string run_summary(const Simulation& simulation, const RunRecord& record) {
   text += text_of("energy    %.6g J kinetic, %.6g potential, %.6g elastic; at the start %.6g, %.6g, %.6g\n",
                   end.energy.kinetic, end.energy.potential, end.energy.elastic, record.start.kinetic,
                   record.start.potential, record.start.elastic);
-  text += text_of("stretch   %.3g %% at most, %.3g %% on average\n", 100 * end.largest_stretch,
-                  100 * end.mean_stretch);
+  text += text_of("stretch   %.3g %% at most", 100 * end.largest_stretch);
+  if (const std::string name = name_of(simulation, end.most_stretched); !name.empty())
+    text += " ('" + name + "')";
+  text += text_of(", %.3g %% on average\n", 100 * end.mean_stretch);
   text += text_of("contacts  %u, deepest overlap %.3g mm\n", record.last.contacts,
                   1000 * end.largest_penetration);
   text += text_of_breaks(simulation);

@@ -294,24 +294,6 @@ void RunWatch::take_new_objects(const Simulation& simulation) {
   look_at_crossings(simulation.world());
 }
 
-/// Whether a deformable of a scene has this point.
-static bool has_point(const SceneObject& object, PointRef p) {
-  const auto is = [&](auto id) { return id.slot == p.slot && id.generation == p.generation; };
-  switch (p.kind) {
-    case PointRef::Kind::kParticles:
-      return object.kind == SceneObject::Kind::kParticles && is(object.particles);
-    case PointRef::Kind::kRope:
-      return object.kind == SceneObject::Kind::kRope && is(object.rope);
-    case PointRef::Kind::kCloth:
-      return object.kind == SceneObject::Kind::kCloth && is(object.cloth);
-    case PointRef::Kind::kSolid:
-      return object.kind == SceneObject::Kind::kSolid && is(object.solid);
-    case PointRef::Kind::kNone:
-      break;
-  }
-  return false;
-}
-
 /// Tells whether two names are of copies of one object of a scene: "flag[0]" and "flag[63]".
 static bool are_copies(const std::string& a, const std::string& b) {
   const std::size_t end = a.rfind('[');

@@ -46,6 +46,8 @@ struct SceneMaterial {
   float sheen = 0.35f;                    ///< Light that the fibers of a cloth throw at its rim. [0, 1]
   std::optional<Real> thread_pitch = {};  ///< Distance of the threads of a cloth [m], positive.
   bool hair = false;                      ///< Whether ropes are drawn as tufts of hair.
+  Real tiles =
+      Real(1);  ///< Width of the tiles that lines mark on a level half-space [m]; 0 for none. [0, 1000]
   std::string normal_map = {};     ///< Path of an image of normals, or of heights in grays; empty for none.
   float normal_scale = 1.0f;       ///< How strong its relief is; a negative one turns it inward. [-100, 100]
   std::string roughness_map = {};  ///< Path of an image: green times roughness, blue times metalness.
@@ -591,6 +593,8 @@ struct SceneObject {
 [[nodiscard]] PointView velocities_of(const World& world, const SceneObject& object);
 /// A reference to point `index` of such an object, whether or not it has so many; an empty one for others.
 [[nodiscard]] PointRef point_of(const SceneObject& object, std::size_t index);
+/// Whether a point belongs to such an object; false for other objects and for an empty reference.
+[[nodiscard]] bool has_point(const SceneObject& object, PointRef point);
 
 /// One expectation, evaluated.
 struct SceneVerdict {

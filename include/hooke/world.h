@@ -231,7 +231,9 @@ struct Measurement {
   DVec3 momentum = {};          ///< Momentum [kg m/s].
   DVec3 angular_momentum = {};  ///< Angular momentum about the world's origin [kg m^2/s].
   double largest_stretch = 0;   ///< Largest |length / rest length - 1| of rope segments and stretch springs.
-  double mean_stretch = 0;      ///< Mean of the same.
+  PointRef most_stretched =
+      {};                   ///< Where that is: the first point of the segment; empty where nothing stretches.
+  double mean_stretch = 0;  ///< Mean of |length / rest length - 1|.
   double largest_penetration = 0;  ///< Deepest overlap of a particle with a shape, or of two bodies [m].
   /// Largest amount by which parts of deformables are nearer to each other, or to others of the same one,
   /// than they keep there [m], of contacts found in the last step.
@@ -509,6 +511,8 @@ class World {
   [[nodiscard]] SolidId soft_form(BodyId id) const;
   /// The body that a solid is the soft form of; null for other solids.
   [[nodiscard]] BodyId body_of(SolidId id) const;
+  /// The same for a point of such a solid; null for points of all else.
+  [[nodiscard]] BodyId body_of(PointRef point) const;
   ///@{
   /// The surface of a body with BodyDesc::yields as it is now, rigid or soft, in the world [m], and its
   /// triangles, as surface() and triangles() of a solid. The triangles change only if its

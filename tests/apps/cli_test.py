@@ -191,6 +191,18 @@ class Run(Program):
         out, _ = self.hooke("run", self.scene(content), "--seconds", 0.5)
         self.assertIn("1 of 1 expectations are due later", out)
 
+    def test_the_object_that_stretches_most_is_named(self):
+        rope = {"hook_point": [0, 3, 0], "direction": [0, -1, 0], "length_at_rest": 1, "total_mass": 0.1,
+                "stiffness": 100}
+        content = {"version": 1, "ropes": [
+            {"name": "light", **rope},
+            {"name": "heavy", **rope, "hook_point": [1, 3, 0], "loads": [{"point": "last", "mass": 1}]}]}
+        out, _ = self.hooke("run", self.scene(content), "--seconds", 0.5, "--json", "report.json")
+        self.assertRegex(out, r"stretch   [0-9.]+ % at most \('heavy'\), [0-9.]+ % on average")
+        self.assertEqual(json.loads((self.folder / "report.json").read_text())["most_stretched"], "heavy")
+        out, _ = self.hooke("run", self.scene({"version": 1, "bodies": []}), "--seconds", 0.1)
+        self.assertIn("stretch   0 % at most, 0 % on average", out)
+
     def test_the_table_has_a_line_for_each_step(self):
         self.hooke("run", self.scene(FALLING), "--csv", "steps.csv", "--json", "report.json")
         with open(self.folder / "steps.csv", encoding="utf-8", newline="") as file:
@@ -741,6 +753,34 @@ class Render(Program):
             # Sky and ground change from row to row only; things also change along a row.
             edges = sum(abs(row[i] - row[i - 3]) > 40 for row in rows for i in range(3, len(row)))
             self.assertGreater(edges, 20, scene)
+
+    def test_tiles_mark_the_ground_or_not(self):
+        def colors(tiles):
+            """Number of changes along the rows of the lower half, which shows ground alone."""
+            ground = {"name": "ground", "material": "stone", "shape": {"half_space": {}}}
+            self.draw(self.scene({"version": 1, "materials": {"stone": {"tiles": tiles}}, "bodies": [ground],
+                                  "camera": {"eye": [0, 0.6, 1.2], "target": [0, 0, 0]}}),
+                      "-o", "x.png", "--size", "160x90")
+            rows = read_png(self.folder / "x.png")[2][50:]
+            return sum(abs(row[i] - row[i - 3]) > 1 for row in rows for i in range(3, len(row)))
+        self.assertLess(colors(0), 20)
+        self.assertGreater(colors(0.5), 300)
+
+    def test_what_is_drawn_in_place_of_a_body_has_its_color_where_the_file_has_none(self):
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+        cube = "".join(f"v {x - 0.5} {y - 0.5} {z - 0.5}\n" for x, y, z in corners)
+        cube += "".join("f " + " ".join(map(str, face)) + "\n" for face in faces)
+        (self.folder / "plain.obj").write_text(cube)
+        (self.folder / "green.obj").write_text("mtllib green.mtl\nusemtl green\n" + cube)
+        (self.folder / "green.mtl").write_text("newmtl green\nKd 0 1 0\n")
+        for file, strongest in (("plain.obj", 0), ("green.obj", 1)):
+            content = {"version": 1, "materials": {"red": {"color": [1, 0, 0]}}, "meshes": {"m": {"file": file}},
+                       "bodies": [{"material": "red", "visual": "m", "shape": {"sphere": {"radius": 0.5}}}],
+                       "camera": {"eye": [0, 0, 2], "target": [0, 0, 0]}}
+            self.draw(self.scene(content), "-o", "x.png", "--size", "64x64")
+            pixel = read_png(self.folder / "x.png")[2][32][96:99]
+            self.assertEqual(max(range(3), key=lambda i: pixel[i]), strongest, (file, list(pixel)))
 
     def test_pictures_between_two_steps_differ_from_both(self):
         content = dict(copy.deepcopy(FALLING), camera={"eye": [0, 10, 3], "target": [0, 10, 0]})

@@ -72,7 +72,7 @@ constexpr const char* kEverything = R"({
                          "friction": 0.9, "static_friction": 1, "restitution": 0.25, "rolling_friction": 0.001,
                          "spinning_friction": 0.002}, "plain": {},
                 "unused": {"like": "cotton", "color": [0.5, 0.25, 0.125], "metalness": 0.5, "roughness": 0.25,
-                           "transmission": 0.125, "sheen": 0.75, "thread_pitch": 0.001, "hair": true, "density": 900,
+                           "transmission": 0.125, "sheen": 0.75, "thread_pitch": 0.001, "hair": true, "tiles": 0.5, "density": 900,
                            "young_modulus": 5000, "poisson_ratio": 0.25, "areal_density": 0.3,
                            "stretch_stiffness": 5000, "shear_stiffness": 50, "bend_stiffness": 0.0001,
                            "linear_density": 0.05, "diameter": 0.02, "strength": 100,

@@ -369,6 +369,23 @@ TEST_SUITE("session/session") {
 
   constexpr double kLong = 120;  // Nothing waits for so long but on a machine that is stuck [s].
 
+  TEST_CASE("a body's figures tell what a jelly that lies on it weighs") {
+    Session session("", loader_of(R"({"version": 1,
+      "bodies": [{"name": "ground", "shape": {"half_space": {}}},
+                 {"name": "table", "shape": {"box": {"half_extents": [1, 0.5, 1]}}, "position": [0, 0.5, 0]}],
+      "solids": [{"name": "jelly", "cells": [3, 3, 3], "size": [0.5, 0.5, 0.5], "position": [0, 1.25, 0],
+                  "total_mass": 4}]})"),
+                    {.playing = false});
+    session.post(Select{"table"});
+    const std::uint64_t number = session.post(MakeSteps{180});
+    const auto view =
+        session.wait_for([&](const SessionView& v) { return v.commands >= number && v.step == 180; }, kLong);
+    double force = -1;
+    for (const MeasuredValue& value : view->measured)
+      if (value.name == "force of ropes, cloths and solids") force = value.value;
+    CHECK(force == doctest::Approx(4 * 9.81).epsilon(0.03));
+  }
+
   TEST_CASE("while it loads, calls return at once, and commands wait") {
     const auto start = std::chrono::steady_clock::now();
     Session session("", loader_of(kScene, 1), {.playing = false});

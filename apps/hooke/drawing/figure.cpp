@@ -65,6 +65,7 @@ Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoa
   finish.sheen = look.sheen;
   finish.thread_pitch = static_cast<float>(look.thread_pitch.value_or(Real(0)));
   finish.hair = look.hair;
+  finish.tiles = static_cast<float>(look.tiles);
   finish.relief = look.normal_scale;
   const auto image = [&](const std::string& file, ImageUse use) -> std::shared_ptr<const render::Image> {
     if (file.empty()) return nullptr;
@@ -76,12 +77,25 @@ Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoa
   return finish;
 }
 
-const std::string kModelsOwn = {};  // In place of a material's name: the model has its own.
+/// Whether a model's file says nothing of how this material looks. Files of .obj without materials give one
+/// of that name.
+bool is_plain(const ModelMaterial& material) {
+  const ModelMaterial plain;
+  return (material.color == plain.color || material.name == "DefaultMaterial") &&
+         material.opacity == plain.opacity && material.texture.empty() && material.normal_map.file.empty() &&
+         material.roughness_map.file.empty() && material.metalness == plain.metalness && !material.roughness;
+}
 
-std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& textures) {
+/// Parts of which the model says nothing get the other finish, if there is one.
+std::vector<PaintedRange> model_ranges(const Model& model, const std::optional<Finish>& other,
+                                       const TextureLoader& textures) {
   std::vector<PaintedRange> ranges;
   for (const ModelPart& part : model.parts) {
     const ModelMaterial& material = model.materials[part.material];
+    if (other && is_plain(material)) {
+      if (part.count > 0) ranges.push_back({part.first, part.count, *other});
+      continue;
+    }
     Finish finish = {.color = srgb_color_of(material.color),
                      .opacity = material.opacity,
                      .shininess = material.shininess,
@@ -105,12 +119,15 @@ struct Look {
   const std::string& material;  ///< Empty for a model's own materials, or the usual color.
   const SceneMaterial& look;
   const Model* model;
+  bool is_visual = false;  ///< The model is drawn in place of the object, and keeps its own materials.
 };
 
 std::vector<PaintedRange> ranges_of(const Scene& scene, const Look& look, const TextureLoader& textures) {
-  if (!look.material.empty()) return {{0, 0, finish_of(scene, look.look, textures)}};
+  std::optional<Finish> finish;
+  if (!look.material.empty()) finish = finish_of(scene, look.look, textures);
+  if (finish && !look.is_visual) return {{0, 0, *finish}};
   std::vector<PaintedRange> ranges;
-  if (look.model != nullptr) ranges = model_ranges(*look.model, textures);
+  if (look.model != nullptr) ranges = model_ranges(*look.model, finish, textures);
   if (ranges.empty()) ranges.push_back({0, 0, {.color = usual_color(look.kind)}});
   return ranges;
 }
@@ -136,7 +153,7 @@ const Model* drawn_materials(const Shape& shape, const std::shared_ptr<const Mod
 std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object,
                                    const TextureLoader& textures, BodyGeometries& geometries) {
   if (object.visual != nullptr) {
-    const Look look = {object.kind, kModelsOwn, object.look, object.visual.get()};
+    const Look look = {object.kind, object.material, object.look, object.visual.get(), true};
     return {{.geometry = geometries.find(Shape::of_mesh({}), object.visual),
              .ranges = ranges_of(scene, look, textures)}};
   }
@@ -273,7 +290,7 @@ bool add_ground(const Figure& figure, const FigurePlace& place, render::DrawList
   ground.height = place.position.y;
   ground.color = finish.color;
   ground.line_color = {0.88F * finish.color.r, 0.88F * finish.color.g, 0.88F * finish.color.b};
-  ground.grid_spacing = 1;
+  ground.grid_spacing = finish.tiles;
   ground.grid_x = place.position.x;
   ground.grid_z = place.position.z;
   list.ground = ground;
@@ -405,9 +422,7 @@ Figure make_figure(const Simulation& simulation, const SceneObject& object, cons
     figure.half_space = object.shape.kind == ShapeKind::kHalfSpace;
     return figure;
   }
-  // What is drawn in place of the solid keeps its own materials; the solid's only says how it slides.
-  const std::string& material = object.visual != nullptr ? kModelsOwn : object.material;
-  const Look look = {object.kind, material, object.look, object.model.get()};
+  const Look look = {object.kind, object.material, object.look, object.model.get(), object.visual != nullptr};
   figure.ranges = ranges_of(simulation.scene(), look, textures);
   if (object.kind == SceneObject::Kind::kCloth) prepare_cloth(simulation, object, figure);
   if (object.kind == SceneObject::Kind::kSolid) prepare_solid(simulation, object, figure);

@@ -32,6 +32,7 @@ struct Finish {
   std::shared_ptr<const render::Image> finish = {};   ///< See render::DrawMesh.
   float relief = 1;                                   ///< Strength of the normals.
   bool hair = false;                                  ///< Whether ropes are tufts of hair.
+  float tiles = 1;                                    ///< Width of tiles of a ground [m]; 0 for none.
 };
 
 /// Returns the finish of loads.

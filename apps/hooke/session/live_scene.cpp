@@ -23,6 +23,8 @@ constexpr Real kLeastHandForce = Real(200);
 constexpr Real kConnectedShare = Real(0.25);
 /// How far in front of the eye a ball starts [m].
 constexpr double kMuzzle = 0.3;
+/// Lever of a ball's resistance to rolling, over its radius: at 5 m/s it comes to rest after 36 m.
+constexpr Real kBallRolling = Real(0.05);
 /// How far above the place where it is dropped an object starts [m].
 constexpr double kDropHeight = 0.3;
 constexpr double kUsualReach = 0.5;  ///< [m]
@@ -33,28 +35,6 @@ std::string_view title_of(const Action& action) {
                                                  "pin",  "tie", "removal", "cut",  "edit"};
   static_assert(std::size(kTitles) == std::variant_size_v<Action>);
   return kTitles[action.index()];
-}
-
-bool is_of(const SceneObject& object, PointRef point) {
-  switch (point.kind) {
-    case PointRef::Kind::kRope:
-      return object.rope.slot == point.slot;
-    case PointRef::Kind::kCloth:
-      return object.cloth.slot == point.slot;
-    case PointRef::Kind::kSolid:
-      return object.solid.slot == point.slot;
-    case PointRef::Kind::kParticles:
-      return object.particles.slot == point.slot;
-    case PointRef::Kind::kNone:
-      break;
-  }
-  return false;
-}
-
-/// The body that is soft because it yielded, whose point this is; null for every other point.
-BodyId body_of_soft_form(const World& world, PointRef point) {
-  if (point.kind != PointRef::Kind::kSolid) return {};
-  return world.body_of(SolidId{point.slot, point.generation, point.world});
 }
 
 Real mass_of(const World& world, const SceneObject& object) {
@@ -225,7 +205,7 @@ std::string LiveScene::held() const {
 
 std::string LiveScene::name_of(BodyId body, PointRef point) const {
   for (const SceneObject& object : simulation_.objects()) {
-    if (body ? object.body == body : is_of(object, point)) return object.name;
+    if (body ? object.body == body : has_point(object, point)) return object.name;
   }
   return {};
 }
@@ -242,7 +222,7 @@ std::optional<LiveScene::Target> LiveScene::find(const Ray& ray) const {
   } else {
     target.point = object.value()->place.nearest;
     target.place = object.value()->place.point;
-    if (const BodyId soft = body_of_soft_form(world, target.point)) {
+    if (const BodyId soft = world.body_of(target.point)) {
       target.body = soft;
       target.point = {};
     }
@@ -313,6 +293,8 @@ Outcome LiveScene::perform(const Shoot& shoot) {
   ball.desc.position = shoot.ray.origin + (kMuzzle + shoot.radius) * direction;
   ball.desc.velocity = vector_cast<Real>(shoot.speed * direction);
   ball.desc.bullet = true;
+  ball.desc.reports_contacts = true;
+  ball.desc.contact.rolling_friction = kBallRolling * ball.desc.shape.radius;
   return add({.bodies = {ball}}, "shot '" + ball.tag.name + "'");
 }
 

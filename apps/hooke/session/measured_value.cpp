@@ -23,11 +23,15 @@ void add_body(Values& values, const World& world, BodyId body) {
   values.push_back({"speed", "m/s", static_cast<double>(length(velocity))});
   values.push_back({"spin", "rad/s", static_cast<double>(length(world.angular_velocity(body)))});
   values.push_back({"kinetic energy", "J", world.energy(body).kinetic});
-  // What ropes, cloths and solids press with is known only where reports_contacts asks for it.
   double pressed = 0;
   for (const BodyContact& contact : world.body_contacts(body))
     pressed += static_cast<double>(contact.normal_force);
   values.push_back({"force of bodies", "N", pressed});
+  // Known where the body or the deformable has reports_contacts, as every body of a session has.
+  double soft = 0;
+  for (const DeformableContact& contact : world.deformable_contacts(body))
+    soft += static_cast<double>(contact.normal_force);
+  values.push_back({"force of ropes, cloths and solids", "N", soft});
   values.push_back({"asleep", "", world.asleep(body) ? 1.0 : 0.0});
 }
 

@@ -137,7 +137,11 @@ void Session::run() {
 Session::LivePtr Session::build(SharedDocument document) {
   // The command is not done, so that all but the progress is as others saw it last.
   SessionView shown = *view();
-  Loaded<Simulation> built = loader_.build(document->scene, [&](const std::string& text) {
+  Scene scene = document->scene;
+  // The view tells what cloths, ropes and solids press on a body with, which the world keeps only where
+  // asked.
+  for (SceneBody& body : scene.objects.bodies) body.desc.reports_contacts = true;
+  Loaded<Simulation> built = loader_.build(scene, [&](const std::string& text) {
     shown.progress = text;
     publish(shown);
   });

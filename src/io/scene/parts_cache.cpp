@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// To be raised whenever decompose_convex gives other parts for the same mesh. tests/lint/compare_hashes.py, which
-// reads no kept parts, tells of it.
+// To be raised whenever decompose_convex gives other parts for the same mesh. tests/lint/compare_hashes.py,
+// which reads no kept parts, tells of it.
 constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kPartsMax = 256;
 constexpr std::uint32_t kPointsMax = 4096;  // Of one part.

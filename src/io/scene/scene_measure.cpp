@@ -314,4 +314,8 @@ PointRef point_of(const SceneObject& object, std::size_t index) {
   }
 }
 
+bool has_point(const SceneObject& object, PointRef point) {
+  return point.kind != PointRef::Kind::kNone && point_of(object, point.index) == point;
+}
+
 }  // namespace hooke

@@ -341,7 +341,9 @@ std::vector<Field> look_rows() {
       field<&SceneMaterial::sheen>("sheen", "", between(0, 1), "Light at the rim of a cloth, by its fibers."),
       field<&SceneMaterial::thread_pitch>("thread_pitch", "m", kPositive,
                                           "Distance of the threads of a grid of cloth."),
-      field<&SceneMaterial::hair>("hair", "", kAny, "Ropes are drawn as tufts of hair.")};
+      field<&SceneMaterial::hair>("hair", "", kAny, "Ropes are drawn as tufts of hair."),
+      field<&SceneMaterial::tiles>("tiles", "m", between(0, 1000),
+                                   "Width of the tiles that lines mark on a level ground; 0 draws none.")};
 }
 
 /// What a material says of what is made of it, and of contacts.

@@ -44,12 +44,6 @@ Real mass_of_object(const World& world, PointRef object) {
   return Real(0);
 }
 
-/// The body whose soft form an object is; null for every other object.
-BodyId body_of_soft_form(const World& world, PointRef object) {
-  if (object.kind != PointRef::Kind::kSolid) return {};
-  return world.body_of(SolidId{object.slot, object.generation, object.world});
-}
-
 /// Describes one of the two bodies of a hand: it is felt by nothing but hooks.
 BodyDesc body_of_hand(BodyKind kind, DVec3 at) {
   return {.kind = kind,
@@ -108,7 +102,7 @@ Result<void> Hand::grab(World& world, BodyId body, DVec3 at, const HandDesc& des
 
 Result<void> Hand::grab(World& world, PointRef object, DVec3 at, const HandDesc& desc) {
   const base::FloatEnvironment environment;
-  if (const BodyId body = body_of_soft_form(world, object)) return grab(world, body, at, desc);
+  if (const BodyId body = world.body_of(object)) return grab(world, body, at, desc);
   if (const auto good = check_hand(desc); !good) return good;
   const Real mass = mass_of_object(world, object);
   if (!(mass > Real(0))) return Error{ErrorCode::kStaleId, "object", "is gone"};

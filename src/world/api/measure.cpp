@@ -11,6 +11,7 @@
 #include "state/sleeping_pairs.h"
 #include "world/claim.h"
 #include "world/hook_stages.h"
+#include "world/object_edits.h"
 #include "world/world_data.h"
 
 #include <algorithm>
@@ -109,15 +110,30 @@ double deepest_of_bodies(const Tables& t) {
 struct Stretch {
   double largest = 0, sum = 0;
   std::size_t count = 0;
+  std::uint32_t where = 0;  ///< Particle at one end of what stretches most.
 
-  void add(double length, double rest) {
+  void add(double length, double rest, std::uint32_t particle) {
     if (!(rest > 0)) return;
     const double relative = std::abs(length / rest - 1.0);
-    largest = std::max(largest, relative);
+    if (relative > largest) {
+      largest = relative;
+      where = particle;
+    }
     sum += relative;
     ++count;
   }
 };
+
+/// The particle as a point of its object; empty for none that stretches.
+PointRef place_of(const Tables& t, const Stretch& stretch) {
+  if (!(stretch.largest > 0)) return {};
+  for (const state::Deformable& object : t.objects) {
+    const state::Rows& rows = object.particles;
+    if (stretch.where >= rows.first && stretch.where < rows.end())
+      return world::point_of(t, object, stretch.where - rows.first);
+  }
+  return {};
+}
 
 double elastic(double stiffness, double extension) {
   return std::isinf(stiffness) ? 0.0 : 0.5 * stiffness * extension * extension;
@@ -130,7 +146,7 @@ double measure_springs(const Tables& t, Stretch& stretch) {
     if (kind == state::SpringClass::kTether || kind == state::SpringClass::kLimit) continue;
     const double l = distance(t, t.springs.particle_a[i], t.springs.particle_b[i]);
     const auto rest = static_cast<double>(t.springs.rest_length[i]);
-    if (kind == state::SpringClass::kStretch) stretch.add(l, rest);
+    if (kind == state::SpringClass::kStretch) stretch.add(l, rest, t.springs.particle_a[i]);
     const double middle =
         length(middle_of(t, t.springs.particle_a[i]) - middle_of(t, t.springs.particle_b[i]));
     energy += elastic(static_cast<double>(t.springs.stiffness[i]), middle - rest);
@@ -174,7 +190,7 @@ double measure_segments(const Tables& t, Stretch& stretch) {
       if (!t.segments.joins(s)) continue;
       const double l = distance(t, object.particles.first + i, object.particles.first + i + 1);
       const auto rest = static_cast<double>(t.segments.rest_length[s]);
-      stretch.add(l, rest);
+      stretch.add(l, rest, object.particles.first + i);
       energy += stretch_energy(t, s, object.particles.first + i);
     }
   }
@@ -294,6 +310,7 @@ Measurement World::measure() const {
                      measure_rope_bends(t) + measure_twists(t) + measure_tetrahedra(t) + measure_gas(t) +
                      measure_matches(t);
   m.largest_stretch = stretch.largest;
+  m.most_stretched = place_of(t, stretch);
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks) m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t));
   m.largest_surface_overlap = static_cast<double>(solver::largest_overlap(t, reading->frame.surfaces));

@@ -54,6 +54,11 @@ BodyId World::body_of(SolidId id) const {
   return {};
 }
 
+BodyId World::body_of(PointRef point) const {
+  if (point.kind != PointRef::Kind::kSolid) return {};
+  return body_of(SolidId{point.slot, point.generation, point.world});
+}
+
 std::vector<DVec3> World::surface(BodyId id) const {
   const world::Reading reading(data_);
   const Yielding* yielding = find_yielding(reading.tables(), id);
