@@ -504,6 +504,11 @@ class View(unittest.TestCase):
         window.wait("the inspector is hidden", lambda s: "save" not in s["boxes"])
         self.end()
 
+    def test_panels_do_not_grow_over_each_other(self):
+        boxes = self.open("--paused", "--ui-scale", "8").fresh()["boxes"]
+        self.assertLess(boxes["save CSV"][2], boxes["tab Objects"][0])
+        self.end()
+
     def test_pins_strings_drops_and_removal(self):
         window = self.open("--paused")
         objects = window.fresh()["objects"]

@@ -15,9 +15,9 @@ namespace hooke::app {
 
 namespace {
 
-constexpr float kPanelWidth = 23;        ///< In heights of the font.
-constexpr float kTimelineHeight = 6.5F;  ///< Of the bar below, with what lies around it; the same.
-constexpr double kFreshSeconds = 6;      ///< For which the answer to a command is bright [s].
+constexpr float kTimelineHeight =
+    6.5F;                            ///< Of the bar below, with what lies around it, in heights of the font.
+constexpr double kFreshSeconds = 6;  ///< For which the answer to a command is bright [s].
 const ImVec4 kWarningColor = {1, 0.45F, 0.35F, 1};
 const ImVec4 kEngineWarningColor = {1, 0.75F, 0.35F, 1};
 

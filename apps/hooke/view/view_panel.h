@@ -12,6 +12,9 @@
 
 namespace hooke::app {
 
+/// Width of the panel on the left, in heights of the font.
+inline constexpr float kPanelWidth = 23;
+
 /// What the pictures of the window cost.
 struct PictureCost {
   double milliseconds = 0;  ///< Of a picture; 0 before the first.

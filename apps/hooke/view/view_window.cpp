@@ -39,6 +39,10 @@ double milliseconds_since(WallClock::time_point start) {
 
 constexpr double kWaitSeconds = 0.02;  ///< Between two looks at a session in which nothing changes.
 
+constexpr float kPanelMargin = 12;  ///< Beside panels [screen units].
+constexpr float kPanelRim =
+    2.7F;  ///< Around the contents of a panel, with its scroll bar, in heights of the font.
+constexpr float kLeastInterfaceScale = 0.5F;
 constexpr float kLetterHeight = 13;  ///< Of the library's own letters [screen units].
 
 ImGuiStyle interface_style() {
@@ -225,17 +229,20 @@ void wake_by_events(GLFWwindow* window) {
       window, [](GLFWwindow* its, int, int) { window_of(its).pace.wake(WallClock::now()); });
 }
 
-/// Size of the panels: what was asked for, else what keeps them readable on a large or dense display.
-float interface_scale(const Window& window, int height_px) {
-  if (window.interface_scale) return static_cast<float>(*window.interface_scale) * window.input.zoom();
+/// Size of the panels: what was asked for, else what keeps them readable on a large or dense display; at most
+/// what leaves room for both beside one another.
+float interface_scale(const Window& window, int width_px, int height_px) {
   constexpr float kUsualHeight = 1080;
   const float fitting = std::round(4 * static_cast<float>(height_px) / kUsualHeight) / 4;
-  return std::clamp(fitting, 1.0F, 4.0F) * window.input.zoom();
+  const float wanted = static_cast<float>(window.interface_scale.value_or(std::clamp(fitting, 1.0F, 4.0F))) *
+                       window.input.zoom();
+  const float room = 0.5F * static_cast<float>(width_px) - 2 * kPanelMargin;
+  return std::min(wanted, std::max(room / ((kPanelWidth + kPanelRim) * kLetterHeight), kLeastInterfaceScale));
 }
 
 /// Draws the letters anew if their size has changed: letters that are only stretched are blurred.
-void scale_interface(Window& window, int height_px) {
-  const float scale = interface_scale(window, height_px);
+void scale_interface(Window& window, int width_px, int height_px) {
+  const float scale = interface_scale(window, width_px, height_px);
   if (scale == window.drawn_scale) return;
   window.drawn_scale = scale;
   ImGui::GetStyle() = interface_style();
@@ -271,8 +278,8 @@ void show_presses(Window& window, GLFWwindow* handle) {
   }
 }
 
-void begin_interface(Window& window, GLFWwindow* handle, int height_px) {
-  scale_interface(window, height_px);
+void begin_interface(Window& window, GLFWwindow* handle, int width_px, int height_px) {
+  scale_interface(window, width_px, height_px);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   show_presses(window, handle);
@@ -412,7 +419,7 @@ Result<void> draw_picture(Window& window, render::Renderer& renderer, const rend
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(context.window(), &width, &height);
-  begin_interface(window, context.window(), height);
+  begin_interface(window, context.window(), width, height);
   take_view(window);
   handle_input(window, context.window());
   mark_selected(window);
