@@ -504,6 +504,18 @@ class View(unittest.TestCase):
         window.wait("the inspector is hidden", lambda s: "save" not in s["boxes"])
         self.end()
 
+    def test_edits_outlive_the_display(self):
+        server, display = start_display()
+        window = self.window = Window(self.folder.name, display, "--paused")
+        window.enter("key world.gravity", "0, -3, 0")
+        server.kill()
+        server.wait()
+        _, err = window.program.communicate(timeout=60)
+        self.assertIn("they are kept in 'scene-unsaved.json'", err)
+        kept = (pathlib.Path(self.folder.name) / "scene-unsaved.json").read_text()
+        self.assertIn("[0, -3, 0]", kept)
+        self.assertEqual((pathlib.Path(self.folder.name) / "scene.json").read_text(), SCENE)
+
     def test_panels_do_not_grow_over_each_other(self):
         boxes = self.open("--paused", "--ui-scale", "8").fresh()["boxes"]
         self.assertLess(boxes["save CSV"][2], boxes["tab Objects"][0])

@@ -4,6 +4,7 @@
 #include "hooke/drawing/scene_drawing.h"
 #include "hooke/view/eye.h"
 #include "hooke/view/picture_pace.h"
+#include "hooke/view/unsaved_edits.h"
 #include "hooke/view/view_input.h"
 #include "hooke/view/view_log.h"
 #include "hooke/view/view_panel.h"
@@ -523,8 +524,11 @@ Result<void> run_window(Session& session, const ViewOptions& options) {
 }  // namespace
 
 Result<void> run_view(Session& session, const ViewOptions& options) {
+  UnsavedEdits edits(session);
   try {
-    return run_window(session, options);
+    auto closed = run_window(session, options);
+    if (closed) edits.forget();
+    return closed;
   } catch (const std::exception& exception) {
     return Error{ErrorCode::kUnsupported, "view", exception.what()};
   }
