@@ -1,6 +1,8 @@
 #include "hooke/drawing/insight_drawing.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -94,6 +96,29 @@ void add_insight(const Insight& insight, DVec3 origin, float pixel, render::Draw
       list.lines.push_back({place - axis, place + axis, color_of(point.color), 1, kLineWidth, true});
   }
   add_triangles(insight, origin, list);
+}
+
+std::vector<SeenNumber> numbers_with_room(const Insight& insight, const Eye& eye, double line_px,
+                                          std::size_t& left_out) {
+  const auto width_of = [&](const Insight::Text& text) {
+    return 0.6 * line_px * static_cast<double>(text.text.size());
+  };
+  std::vector<SeenNumber> seen;
+  left_out = 0;
+  for (const Insight::Text& text : insight.texts) {
+    const auto pixel = pixel_of(eye, text.place);
+    if (!pixel) continue;
+    const bool has_room = std::none_of(seen.begin(), seen.end(), [&](const SeenNumber& other) {
+      const double across = (*pixel)[0] - other.pixel[0];
+      return std::abs((*pixel)[1] - other.pixel[1]) < line_px && across < width_of(*other.text) &&
+             -across < width_of(text);
+    });
+    if (has_room)
+      seen.push_back({&text, *pixel});
+    else
+      ++left_out;
+  }
+  return seen;
 }
 
 }  // namespace hooke::app

@@ -35,12 +35,13 @@ std::string names_of(const std::array<DebugRoute, N>& routes) {
 }
 
 /// Writes the numbers of a debug picture beside what they are of, with a shadow that makes them legible.
-void add_numbers(const Insight& insight, const Eye& eye, render::DrawList& list) {
-  for (const Insight::Text& text : insight.texts) {
-    const auto pixel = pixel_of(eye, text.place);
-    if (!pixel) continue;
-    render::DrawText drawn = {.x_px = static_cast<float>((*pixel)[0]) + 6,
-                              .y_px = static_cast<float>((*pixel)[1]) - 6,
+/// Returns how many have no room.
+std::size_t add_numbers(const Insight& insight, const Eye& eye, render::DrawList& list) {
+  std::size_t left_out = 0;
+  for (const SeenNumber& number : numbers_with_room(insight, eye, kNumberSize, left_out)) {
+    const Insight::Text& text = *number.text;
+    render::DrawText drawn = {.x_px = static_cast<float>(number.pixel[0]) + 6,
+                              .y_px = static_cast<float>(number.pixel[1]) - 6,
                               .size_px = kNumberSize,
                               .color = {0, 0, 0},
                               .text = text.text};
@@ -50,6 +51,7 @@ void add_numbers(const Insight& insight, const Eye& eye, render::DrawList& list)
     drawn.color = {text.color.r, text.color.g, text.color.b};
     list.texts.push_back(std::move(drawn));
   }
+  return left_out;
 }
 
 }  // namespace
@@ -83,11 +85,11 @@ void ShownInsight::add(const World& world, DVec3 origin, int width, int height, 
   if (!insight) return;
   const Eye eye = eye_of(camera, origin, width, height);
   add_insight(*insight, origin, static_cast<float>(2 * eye.half_height / height), list);
-  add_numbers(*insight, eye, list);
-  add_legend(*insight, list);
+  add_legend(*insight, add_numbers(*insight, eye, list), list);
 }
 
-void ShownInsight::add_legend(const Insight& insight, render::DrawList& list) const {
+void ShownInsight::add_legend(const Insight& insight, std::size_t numbers_left_out,
+                              render::DrawList& list) const {
   const DebugDrawLegend& legend = insight.legend;
   std::string text;
   if (wish_.desc.contacts) {
@@ -108,6 +110,7 @@ void ShownInsight::add_legend(const Insight& insight, render::DrawList& list) co
     text += "contacts: " + names_of(debug_routes_of_contacts()) +
             "\nhooks: " + names_of(debug_routes_of_hooks()) + "\n";
   }
+  if (numbers_left_out > 0) text += text_of("%zu numbers have no room beside others\n", numbers_left_out);
   if (!text.empty()) list.texts.push_back({.text = std::move(text)});
 }
 

@@ -4,6 +4,7 @@
 
 #include "render/draw_list.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ class ShownInsight {
   void add(const World& world, DVec3 origin, int width, int height, render::DrawList& list);
 
  private:
-  void add_legend(const Insight& insight, render::DrawList& list) const;
+  void add_legend(const Insight& insight, std::size_t numbers_left_out, render::DrawList& list) const;
 
   InsightWish wish_;
   InsightMaker maker_;

@@ -382,14 +382,22 @@ void draw_cut(const Window& window) {
 void write_insight(const Window& window) {
   if (!window.view->insight || !window.has_camera) return;
   ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  for (const Insight::Text& text : window.view->insight->texts) {
-    const auto pixel = pixel_of(present_eye(window), text.place);
-    if (!pixel) continue;
-    const ImVec2 at = {static_cast<float>((*pixel)[0]) + 5, static_cast<float>((*pixel)[1]) - 5};
-    canvas->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 200), text.text.c_str());
-    canvas->AddText(at, ImGui::ColorConvertFloat4ToU32({text.color.r, text.color.g, text.color.b, 1}),
-                    text.text.c_str());
+  const auto write = [&](ImVec2 at, const std::string& text, ImVec4 color) {
+    canvas->AddText({at.x + 1, at.y + 1}, IM_COL32(0, 0, 0, 200), text.c_str());
+    canvas->AddText(at, ImGui::ColorConvertFloat4ToU32(color), text.c_str());
+  };
+  const float line = ImGui::GetFontSize();
+  std::size_t left_out = 0;
+  for (const SeenNumber& number :
+       numbers_with_room(*window.view->insight, present_eye(window), line, left_out)) {
+    const DebugColor& color = number.text->color;
+    write({static_cast<float>(number.pixel[0]) + 5, static_cast<float>(number.pixel[1]) - 5},
+          number.text->text, {color.r, color.g, color.b, 1});
   }
+  if (left_out == 0) return;
+  const float above_timeline = ImGui::GetIO().DisplaySize.y - 7.5F * line;
+  write({kPanelMargin, above_timeline}, std::to_string(left_out) + " numbers have no room beside others",
+        {1, 1, 1, 1});
 }
 
 void write_log(Window& window, const render::Context& context) {
