@@ -3,6 +3,7 @@
 #include "io/folder_file.h"
 #include "limits.h"
 #include "refusal.h"
+#include "text_encoding.h"
 
 #include <algorithm>
 #include <assimp/IOStream.hpp>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <string_view>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -97,11 +99,14 @@ ModelFolder::ModelFolder(std::string path, std::span<const std::byte> bytes,
                          const std::vector<std::string>& companions)
     : path_(std::move(path)), bytes_(bytes) {
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-  std::size_t budget = kMaxFileSize - bytes.size();
+  std::size_t budget = kMaxFileSize - std::min(bytes.size(), kMaxFileSize);
   for (const std::string& name : companions) {
     try {
       std::vector<std::byte> read = read_regular_file((folder / name).string(), budget);
-      budget -= read.size();
+      const std::size_t dot = name.rfind('.');
+      if (dot != std::string::npos && is_text(std::string_view(name).substr(dot + 1)))
+        read = to_utf8(std::move(read));
+      budget -= std::min(read.size(), budget);
       companions_.emplace(name, std::move(read));
     } catch (const Refusal&) {
       continue;  // The importer may need it and fail, or may not need it.

@@ -16,6 +16,7 @@
 #include "refusal.h"
 #include "sandbox.h"
 #include "scan.h"
+#include "text_encoding.h"
 
 #include <algorithm>
 #include <array>
@@ -127,7 +128,8 @@ void keep_only(Assimp::Importer& importer, std::string_view name) {
 
 Model read_model(const Arguments& arguments) {
   const Format& format = format_of(arguments.path);
-  const std::vector<std::byte> bytes = read_regular_file(arguments.path, kMaxFileSize);
+  std::vector<std::byte> bytes = read_regular_file(arguments.path, kMaxFileSize);
+  if (is_text(format.ending)) bytes = to_utf8(std::move(bytes));
   if (bytes.empty()) throw Refusal(ImporterExit::kBadSyntax, "the file is empty");
   auto folder = std::make_unique<ModelFolder>(arguments.path, bytes,
                                               companion_names(arguments.path, format.ending, bytes));

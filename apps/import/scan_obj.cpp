@@ -9,9 +9,6 @@ namespace hooke::importer {
 
 void scan_obj(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.starts_with("\xFE\xFF") || text.starts_with("\xFF\xFE")) {
-    throw Refusal(io::ImporterExit::kBadSyntax, "text of 16-bit characters is not read: save it as UTF-8");
-  }
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());

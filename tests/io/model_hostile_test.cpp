@@ -170,9 +170,6 @@ TEST_SUITE("io/model_hostile") {
     CHECK(has_line(refused(folder.file("points.ply", points)), "points alone"));
     const std::string old = R"({"asset":{},"nodes":{"node_1":{"children":[]}}})";
     CHECK(has_line(refused(folder.file("old.gltf", old)), "save it as glTF 2"));
-    std::string wide = "\xFE\xFF";
-    for (const char c : std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")) wide += std::string{'\0', c};
-    CHECK(has_line(refused(folder.file("wide.obj", wide)), "save it as UTF-8"));
   }
 
   TEST_CASE("what is no regular file is not opened") {

@@ -4,6 +4,7 @@
 #include "io/model_support.h"
 
 #include <algorithm>
+#include <array>
 #include <doctest/doctest.h>
 #include <limits>
 #include <string>
@@ -131,6 +132,33 @@ TEST_SUITE("io/model_import") {
       const auto& n = model.vertices[model.indices[i]].normal;
       CHECK(dot(cross(p[1] - p[0], p[2] - p[0]), hooke::DVec3{n[0], n[1], n[2]}) > 0);
     }
+  }
+
+  TEST_CASE("text of 16-bit characters and marks of the byte order come in as other text does") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    const std::string obj = std::string("mtllib look.mtl\nusemtl green\n") + kTetrahedron;
+    const std::string mtl = "newmtl green\nKd 0 1 0\n";
+    const auto wide = [](const std::string& text, bool big_end_first) {
+      std::string result = big_end_first ? "\xFE\xFF" : "\xFF\xFE";
+      for (const char c : text) result += big_end_first ? std::string{'\0', c} : std::string{c, '\0'};
+      return result;
+    };
+    const std::string texts[][2] = {{wide(obj, true), wide(mtl, true)},
+                                    {wide(obj, false), wide(mtl, false)},
+                                    {"\xEF\xBB\xBF" + std::string(kTetrahedron), ""},
+                                    {"\xEF\xBB\xBF" + obj, "\xEF\xBB\xBF" + mtl}};
+    for (const auto& [shape, look] : texts) {
+      CAPTURE(shape);
+      (void)folder.file("look.mtl", look);
+      const Model model = imported(folder.file("text.obj", shape));
+      CHECK(measure(model.mesh).volume == doctest::Approx(1));
+      if (!look.empty()) CHECK(model.materials.back().color == std::array<float, 3>{0, 1, 0});
+    }
+    // A lone half of a pair, and half a character at the end.
+    const std::string torn =
+        wide(kTetrahedron, false) + std::string("#\0", 2) + std::string("\x00\xD8", 2) + "x";
+    CHECK(measure(imported(folder.file("torn.obj", torn)).mesh).volume == doctest::Approx(1));
   }
 
   TEST_CASE("metalness, roughness, normals and their strength of a .gltf come with its images") {
