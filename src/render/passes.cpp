@@ -120,10 +120,8 @@ void draw_light_maps(const RendererData& data, const Prepared& prepared, const L
 void draw_opaque_depths(const RendererData& data, const Prepared& prepared) {
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   for (const bool two_sided : {false, true}) {
-    if (two_sided)
-      glDisable(GL_CULL_FACE);
-    else
-      glEnable(GL_CULL_FACE);
+    const auto set_culling = two_sided ? glDisable : glEnable;
+    set_culling(GL_CULL_FACE);
     draw_depths(data, prepared, data.programs.depth, data.programs.holed_depth, [&](const Batch& batch) {
       return batch.alpha == AlphaMode::kOpaque && batch.shading == Shading::kSolid && !batch.is_in_order &&
              batch.two_sided == two_sided;

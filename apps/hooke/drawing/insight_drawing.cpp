@@ -113,10 +113,11 @@ std::vector<SeenNumber> numbers_with_room(const Insight& insight, const Eye& eye
       return std::abs((*pixel)[1] - other.pixel[1]) < line_px && across < width_of(*other.text) &&
              -across < width_of(text);
     });
-    if (has_room)
-      seen.push_back({&text, *pixel});
-    else
+    if (!has_room) {
       ++left_out;
+      continue;
+    }
+    seen.push_back({&text, *pixel});
   }
   return seen;
 }

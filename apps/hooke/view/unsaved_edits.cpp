@@ -23,10 +23,11 @@ void keep_edits() {
   const std::filesystem::path scene = view->document->scene.path;
   const std::string kept = (scene.parent_path() / (scene.stem().string() + "-unsaved.json")).string();
   const Result<void> written = process::write_file(kept, view->document->text);
-  if (written)
-    std::fprintf(stderr, "hooke view: edits were not saved; they are kept in '%s'\n", kept.c_str());
-  else
+  if (!written) {
     std::fprintf(stderr, "hooke view: edits are lost: %s\n", to_line(written.error()).c_str());
+    return;
+  }
+  std::fprintf(stderr, "hooke view: edits were not saved; they are kept in '%s'\n", kept.c_str());
 }
 
 }  // namespace
