@@ -11,7 +11,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
-#include <string_view>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -70,7 +69,7 @@ class OpenFile {
 
 }  // namespace
 
-std::vector<std::byte> read_regular_file(const std::string& path, std::size_t limit) {
+std::vector<std::byte> read_model_file(const std::string& path, std::size_t limit) {
   const std::filesystem::path named(path);
   const auto real = io::resolve_in_folder(named.parent_path(), named.filename().string());
   if (!real) throw Refusal(ImporterExit::kNotReadable, real.error().message);
@@ -92,7 +91,7 @@ std::vector<std::byte> read_regular_file(const std::string& path, std::size_t li
     at += static_cast<std::size_t>(got);
   }
   bytes.resize(at);
-  return bytes;
+  return is_text(named.extension().string()) ? to_utf8(std::move(bytes)) : bytes;
 }
 
 ModelFolder::ModelFolder(std::string path, std::span<const std::byte> bytes,
@@ -102,10 +101,7 @@ ModelFolder::ModelFolder(std::string path, std::span<const std::byte> bytes,
   std::size_t budget = kMaxFileSize - std::min(bytes.size(), kMaxFileSize);
   for (const std::string& name : companions) {
     try {
-      std::vector<std::byte> read = read_regular_file((folder / name).string(), budget);
-      const std::size_t dot = name.rfind('.');
-      if (dot != std::string::npos && is_text(std::string_view(name).substr(dot + 1)))
-        read = to_utf8(std::move(read));
+      std::vector<std::byte> read = read_model_file((folder / name).string(), budget);
       budget -= std::min(read.size(), budget);
       companions_.emplace(name, std::move(read));
     } catch (const Refusal&) {

@@ -10,9 +10,9 @@
 
 namespace hooke::importer {
 
-/// Returns all bytes of a regular file. Throws a Refusal for a symbolic link that leaves the file's folder,
-/// for folders, pipes and devices and for more than `limit` bytes.
-[[nodiscard]] std::vector<std::byte> read_regular_file(const std::string& path, std::size_t limit);
+/// Returns all bytes of a regular file; text as UTF-8 (text_encoding.h). Throws a Refusal for a symbolic link
+/// that leaves the file's folder, for folders, pipes and devices and for more than `limit` bytes.
+[[nodiscard]] std::vector<std::byte> read_model_file(const std::string& path, std::size_t limit);
 
 /// A ModelFolder holds all that the importers may open: the model and the files that came with it, in memory.
 /// Folders in a name are dropped. After construction nothing is read from the disk, and nothing is ever

@@ -16,7 +16,6 @@
 #include "refusal.h"
 #include "sandbox.h"
 #include "scan.h"
-#include "text_encoding.h"
 
 #include <algorithm>
 #include <array>
@@ -128,8 +127,7 @@ void keep_only(Assimp::Importer& importer, std::string_view name) {
 
 Model read_model(const Arguments& arguments) {
   const Format& format = format_of(arguments.path);
-  std::vector<std::byte> bytes = read_regular_file(arguments.path, kMaxFileSize);
-  if (is_text(format.ending)) bytes = to_utf8(std::move(bytes));
+  const std::vector<std::byte> bytes = read_model_file(arguments.path, kMaxFileSize);
   if (bytes.empty()) throw Refusal(ImporterExit::kBadSyntax, "the file is empty");
   auto folder = std::make_unique<ModelFolder>(arguments.path, bytes,
                                               companion_names(arguments.path, format.ending, bytes));

@@ -53,12 +53,12 @@ std::vector<std::byte> from_utf16(std::span<const std::byte> bytes, bool big_end
 
 }  // namespace
 
-bool is_text(std::string_view ending) {
+bool is_text(std::string_view extension) {
   const auto is = [&](std::string_view other) {
-    return std::equal(ending.begin(), ending.end(), other.begin(), other.end(),
+    return std::equal(extension.begin(), extension.end(), other.begin(), other.end(),
                       [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
   };
-  return is("obj") || is("mtl") || is("gltf");
+  return is(".obj") || is(".mtl") || is(".gltf");
 }
 
 std::vector<std::byte> to_utf8(std::vector<std::byte> bytes) {
