@@ -134,13 +134,18 @@ void Session::run() {
   }
 }
 
+/// Asks for what cloths, ropes and solids press on bodies with: the view tells it, and the world keeps it
+/// only where it is asked for.
+static void report_contacts(SceneObjects& objects) {
+  for (SceneBody& body : objects.bodies) body.desc.reports_contacts = true;
+}
+
 Session::LivePtr Session::build(SharedDocument document) {
   // The command is not done, so that all but the progress is as others saw it last.
   SessionView shown = *view();
   Scene scene = document->scene;
-  // The view tells what cloths, ropes and solids press on a body with, which the world keeps only where
-  // asked.
-  for (SceneBody& body : scene.objects.bodies) body.desc.reports_contacts = true;
+  report_contacts(scene.objects);
+  for (SceneEvent& event : scene.timeline) report_contacts(event.add);
   Loaded<Simulation> built = loader_.build(scene, [&](const std::string& text) {
     shown.progress = text;
     publish(shown);
