@@ -46,8 +46,8 @@ struct SceneMaterial {
   float sheen = 0.35f;                    ///< Light that the fibers of a cloth throw at its rim. [0, 1]
   std::optional<Real> thread_pitch = {};  ///< Distance of the threads of a cloth [m], positive.
   bool hair = false;                      ///< Whether ropes are drawn as tufts of hair.
-  Real tiles =
-      Real(1);  ///< Width of the tiles that lines mark on a level half-space [m]; 0 for none. [0, 1000]
+  /// Width of the tiles that lines mark on a level half-space [m]; 0 for none. [0, 1000]
+  Real tiles = Real(1);
   std::string normal_map = {};     ///< Path of an image of normals, or of heights in grays; empty for none.
   float normal_scale = 1.0f;       ///< How strong its relief is; a negative one turns it inward. [-100, 100]
   std::string roughness_map = {};  ///< Path of an image: green times roughness, blue times metalness.

@@ -231,9 +231,9 @@ struct Measurement {
   DVec3 momentum = {};          ///< Momentum [kg m/s].
   DVec3 angular_momentum = {};  ///< Angular momentum about the world's origin [kg m^2/s].
   double largest_stretch = 0;   ///< Largest |length / rest length - 1| of rope segments and stretch springs.
-  PointRef most_stretched =
-      {};                   ///< Where that is: the first point of the segment; empty where nothing stretches.
-  double mean_stretch = 0;  ///< Mean of |length / rest length - 1|.
+  /// Where that is: a point at one end of it; empty where nothing stretches.
+  PointRef most_stretched = {};
+  double mean_stretch = 0;         ///< Mean of |length / rest length - 1|.
   double largest_penetration = 0;  ///< Deepest overlap of a particle with a shape, or of two bodies [m].
   /// Largest amount by which parts of deformables are nearer to each other, or to others of the same one,
   /// than they keep there [m], of contacts found in the last step.

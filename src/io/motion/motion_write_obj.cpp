@@ -43,7 +43,7 @@ class Sequence {
     return front_ + std::string(digits.size() < width_ ? width_ - digits.size() : 0, '0') + digits + back_;
   }
   /// Returns the path of the materials of all frames.
-  [[nodiscard]] std::string library() const {
+  [[nodiscard]] std::string materials_path() const {
     std::string stem = front_;
     while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == '.')) stem.pop_back();
     const bool is_bare = stem.empty() || stem.back() == '/';
@@ -61,7 +61,7 @@ class Sequence {
 /// An ObjWriter holds what is the same in all frames.
 struct ObjWriter {
   const MotionJob& job;
-  std::string library = {};
+  std::string materials_file = {};
   std::vector<std::string> materials = {};  ///< Name of each material.
   std::vector<std::string> names = {};      ///< Name of each object.
   std::size_t vertices = 0;                 ///< Vertices of this frame so far.
@@ -77,7 +77,7 @@ void put_vector(OutputSink& sink, const char* keyword, DVec3 v, int digits) {
   sink.put("\n");
 }
 
-Result<void> write_library(ObjWriter& writer, const std::string& path) {
+Result<void> write_materials(ObjWriter& writer, const std::string& path) {
   auto images = write_images(writer.job, path);
   if (!images) return images.error();
   NameBook book(NameStyle::kFile);
@@ -152,7 +152,7 @@ void put_body(ObjWriter& writer, OutputSink& sink, std::size_t object, std::size
 Result<void> write_frame(ObjWriter& writer, const std::string& path, std::size_t frame) {
   const MotionData& data = writer.job.data;
   OutputSink sink(path);
-  sink.put("# meters, y up, frame " + std::to_string(frame) + "\nmtllib " + writer.library + "\n");
+  sink.put("# meters, y up, frame " + std::to_string(frame) + "\nmtllib " + writer.materials_file + "\n");
   writer.vertices = writer.uvs = 0;
   for (std::size_t i = 0; i < data.objects.size(); ++i) {
     if (frame < data.tracks[i].first || frame >= data.tracks[i].end) continue;
@@ -180,12 +180,12 @@ Result<void> check_sequence(const std::string& path) {
 Result<void> write_obj_motion(const MotionJob& job) {
   if (auto sound = check_sequence(job.path); !sound) return sound;
   const Sequence sequence(job.path);
-  ObjWriter writer = {.job = job, .library = fs::path(sequence.library()).filename().string()};
+  ObjWriter writer = {.job = job, .materials_file = fs::path(sequence.materials_path()).filename().string()};
   NameBook names(NameStyle::kFile);
   for (const MotionObject& object : job.data.objects)
     writer.names.push_back(names.take(object.name, "object"));
   // The materials are written first, so that an .obj file always finds them.
-  if (auto done = write_library(writer, sequence.library()); !done) return done;
+  if (auto done = write_materials(writer, sequence.materials_path()); !done) return done;
   std::vector<std::string> shown = job.summary.files;
   for (std::size_t frame = 0; frame < job.data.frames.size(); ++frame) {
     if (auto done = write_frame(writer, sequence.name(frame), frame); !done) return done;
